@@ -372,8 +372,9 @@ class TracedFlow(Flow):
     ) -> Vector:
         """Return derivatives of the rates at many states; see :meth:`Flow.slopes_along`."""
         joint, given = self.system.joint, len(self.system.traced.parameters)
-        known = {regime: joint.constants(regime) for regime in set(regimes.tolist())}
-        constants = np.array([known[regime] for regime in regimes.tolist()]).T
+        kinds, kind = np.unique(regimes, return_inverse=True)
+        of_kinds = np.array([joint.constants(regime) for regime in kinds.tolist()])
+        constants = of_kinds.T[:, kind]
         numbers = self.numbers(values, 0)[:given]
         slopes = np.zeros((self.size, self.columns, *states.shape[1:]))
         entries = self.slopes(*states, *numbers, *constants)

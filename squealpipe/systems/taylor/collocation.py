@@ -42,11 +42,15 @@ def _multiply(slopes: Any, lengths: Any, first: int, states: Any, rates: Any) ->
                 rate = rates[node, i, c]
                 for s in range(steps):
                     rate[s] = slopes[i, c, node, first + s] if c >= n else 0.0
-                for j in range(n):
-                    slope, state = slopes[i, j, node, first:last], states[node, j, c]
-                    if slope.any():
+            for j in range(n):
+                slope = slopes[i, j, node, first:last]
+                if slope.any():
+                    for c in range(columns):
+                        rate, state = rates[node, i, c], states[node, j, c]
                         for s in range(steps):
                             rate[s] += slope[s] * state[s]
+            for c in range(columns):
+                rate = rates[node, i, c]
                 for s in range(steps):
                     rate[s] *= lengths[first + s]
 
