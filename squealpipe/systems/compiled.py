@@ -34,12 +34,39 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import event
+from numba.core.registry import CPUDispatcher
 
 from squealpipe.systems.progress import stage
 
 _numba: Any = numba
 _settings: Any = numba.config  # untyped, the home of CACHE_DIR
 _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
+_Dispatcher: Any = CPUDispatcher
+
+
+class _Inner(_Dispatcher):  # type: ignore[misc]
+    """A function that only compiled code calls."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ARG002 (numba's signature)
+        """Raise, where numba would jump to an address that there is not and end the process."""
+        name = self.py_func.__qualname__
+        raise TypeError(
+            f"{name} has no wrapper for Python: call it from a function that is @compiled, or "
+            f"{name}.py_func, its Python code"
+        )
+
+
+def _inner(**options: Any) -> Any:
+    """Return the decorator of functions that only compiled code calls."""
+
+    def compile_(function: Callable[..., Any]) -> Any:
+        kernel = _numba.njit(**options)(function)
+        kernel.__class__ = _Inner
+        return kernel
+
+    return compile_
+
+
 _PART: dict[str, Any] = {
     "error_model": "numpy",
     "no_cpython_wrapper": True,
@@ -47,16 +74,16 @@ _PART: dict[str, Any] = {
     "_nrt": False,
 }
 
-part = _numba.njit(**_PART)
-views = _numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-inline = _numba.njit(forceinline=True, **_PART)
-inline_views = _numba.njit(
+part = _inner(**_PART)
+views = _inner(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+inline = _inner(forceinline=True, **_PART)
+inline_views = _inner(
     error_model="numpy",
     no_cpython_wrapper=True,
     no_cfunc_wrapper=True,
     forceinline=True,
 )
-polynomial = _numba.njit(fastmath={"contract"}, **_PART)
+polynomial = _inner(fastmath={"contract"}, **_PART)
 
 
 class _CompilerClock(event.Listener):  # type: ignore[misc]

@@ -50,6 +50,21 @@ def _omega(process):
     return float(out)
 
 
+@pytest.mark.parametrize(
+    "decorator", ["part", "views", "inline", "inline_views", "polynomial"]
+)
+def test_python_that_calls_a_part_of_compiled_code_is_told_how(decorator):
+    """It ended the process: there is no wrapper at the address that numba jumped to."""
+
+    def double(number):
+        return 2.0 * number
+
+    kernel = getattr(compiled, decorator)(double)
+    with pytest.raises(TypeError, match=r"double has no wrapper for Python: call it "):
+        kernel(1.0)
+    assert kernel.py_func(1.0) == 2.0
+
+
 def test_every_kernel_file_is_part_of_the_digest():
     """A kernel in a file that is not listed would be used stale after an edit."""
     files = PACKAGE.rglob("*.py")
