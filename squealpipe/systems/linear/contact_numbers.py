@@ -56,29 +56,30 @@ def time_unit(k: Any, rows: Any) -> Any:
     return rows[parameter_row.coefficients + OF_CONTACT * k.c, 0]
 
 
+@inline
+def _press_at(k: Any, rows: Any, i: int, compression: float) -> Any:
+    """Return the force of a contact's piece of a table at a compression."""
+    start = regime_value(k, rows, i, FIRST_OF_PRESS)
+    stiffness = regime_value(k, rows, i, FIRST_OF_PRESS + 3)
+    return regime_value(k, rows, i, FIRST_OF_PRESS + 2) + stiffness * (
+        compression - start
+    )
+
+
 @part
 def line_of_press(k: Any, rows: Any, i: int) -> Any:
     """Return the stiffness of a contact's piece of a table, and the piece's force where nᵀq = 0."""
-    start, c0 = (
-        regime_value(k, rows, i, FIRST_OF_PRESS),
-        regime_value(k, rows, i, FIRST_OF_PRESS + 2),
-    )
     stiffness = regime_value(k, rows, i, FIRST_OF_PRESS + 3)
     at_rest = rows[parameter_row.coefficients + OF_CONTACT * i + 3, 0]
-    return stiffness, c0 + stiffness * (at_rest - start)
+    return stiffness, _press_at(k, rows, i, at_rest)
 
 
 @part
 def press_knot(k: Any, rows: Any, i: int, which: int) -> Any:
     """Return the force at the end (0) or the start (1) of a contact's piece of a table."""
-    start, end = (
-        regime_value(k, rows, i, FIRST_OF_PRESS),
-        regime_value(k, rows, i, FIRST_OF_PRESS + 1),
-    )
-    c0 = regime_value(k, rows, i, FIRST_OF_PRESS + 2)
     if which:
-        return c0
-    return c0 + regime_value(k, rows, i, FIRST_OF_PRESS + 3) * (end - start)
+        return regime_value(k, rows, i, FIRST_OF_PRESS + 2)
+    return _press_at(k, rows, i, regime_value(k, rows, i, FIRST_OF_PRESS + 1))
 
 
 @part
