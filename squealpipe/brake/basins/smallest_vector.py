@@ -113,11 +113,23 @@ def _bisect(
     happens: Happens, unit: Array, low: Array, high: Array, halvings: int
 ) -> Array:
     """The upper ends of intervals in which it does not happen below and happens above."""
-    low, high = low.copy(), high.copy()
-    for _ in range(halvings if len(unit) else 0):
-        middle = 0.5 * (low + high)
-        yes = happens(middle[:, None] * unit)
-        low, high = np.where(yes, low, middle), np.where(yes, middle, high)
+    # few vectors cost nearly as much as this many, so several halvings are tried at once
+    together = 24
+    at_once = int(np.log2(together / max(len(unit), 1) + 1.0))
+    columns = np.arange(len(unit))
+    while halvings and len(unit):
+        levels = max(1, min(halvings, at_once))
+        radii = np.stack([low, high])
+        for _ in range(levels):
+            middle = 0.5 * (radii[:-1] + radii[1:])
+            radii = np.insert(radii, range(1, len(radii)), middle, axis=0)
+        tried = (radii[1:-1, :, None] * unit).reshape(-1, unit.shape[1])
+        yes = happens(tried).reshape(-1, len(unit))
+        below = np.zeros(len(unit), int)  # radii of which it does not happen
+        for half in 2 ** np.arange(levels)[::-1]:
+            below += np.where(yes[below + half - 1, columns], 0, half)
+        low, high = radii[below, columns], radii[below + 1, columns]
+        halvings -= levels
     return high
 
 
