@@ -33,7 +33,9 @@ from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import event
+from numba.core import event, typed_passes, untyped_passes
+from numba.core.compiler import CompilerBase
+from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher
 
 from squealpipe.systems.progress import stage
@@ -42,6 +44,37 @@ _numba: Any = numba
 _settings: Any = numba.config  # untyped, the home of CACHE_DIR
 _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
 _Dispatcher: Any = CPUDispatcher
+_Compiler: Any = CompilerBase
+_Passes: Any = PassManager
+
+
+class KernelCompiler(_Compiler):  # type: ignore[misc]
+    """numba's passes that loops over numbers need.
+
+    The others look for closures, generators, expressions of whole arrays and the like: a tenth of
+    the time in vain.
+    """
+
+    def define_pipelines(self) -> list[Any]:
+        """Return the passes."""
+        passes = _Passes("kernel")
+        for each in (
+            untyped_passes.TranslateByteCode,
+            untyped_passes.FixupArgs,
+            untyped_passes.IRProcessing,
+            untyped_passes.RewriteSemanticConstants,
+            untyped_passes.DeadBranchPrune,
+            untyped_passes.GenericRewrites,
+            untyped_passes.ReconstructSSA,
+            typed_passes.NopythonTypeInference,
+            typed_passes.PreLowerStripPhis,
+            typed_passes.IRLegalization,
+            typed_passes.NativeLowering,
+            typed_passes.NoPythonBackend,
+        ):
+            passes.add_pass(each, each.__name__)
+        passes.finalize()
+        return [passes]
 
 
 class _Inner(_Dispatcher):  # type: ignore[misc]
@@ -60,7 +93,7 @@ def _inner(**options: Any) -> Any:
     """Return the decorator of functions that only compiled code calls."""
 
     def compile_(function: Callable[..., Any]) -> Any:
-        kernel = _numba.njit(**options)(function)
+        kernel = _numba.njit(pipeline_class=KernelCompiler, **options)(function)
         kernel.__class__ = _Inner
         return kernel
 

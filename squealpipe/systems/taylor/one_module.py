@@ -17,13 +17,17 @@ from typing import Any
 
 import numba
 from llvmlite.binding import Linkage
+from numba import types
 from numba.core import codegen
 from numba.core.registry import cpu_target
+
+from squealpipe.systems.compiled import KernelCompiler
 
 _numba: Any = numba
 _Library: Any = codegen.JITCodeLibrary
 _Codegen: Any = codegen.JITCPUCodegen
 _target: Any = cpu_target
+_Function: Any = types.Function
 
 
 class _Part(_Library):  # type: ignore[misc]
@@ -83,16 +87,39 @@ def _parts() -> _Parts:
     return _Parts("parts")
 
 
+_usual_type: Any = _Function.get_call_type
+_call_types: dict[Any, Any] = {}
+
+
+def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
+    """Return the signature of a call of a function of numba's, remembered.
+
+    numba tries dozens of candidates for each sum. What it compiles for a call depends on more than
+    the types, and is not remembered.
+    """
+    call = function, tuple(args), tuple(kws.items())
+    found = _call_types.get(call)
+    if found is None:
+        found = _usual_type(function, context, args, kws)
+        if function.get_impl_key(found) != function.typing_key:
+            return found
+        _call_types[call] = found
+    function._impl_keys[found.args] = function.typing_key  # noqa: SLF001
+    return found
+
+
 @contextmanager
 def _only_written() -> Iterator[None]:
     """Let numba compile nothing of what it writes meanwhile."""
     context = _target.target_context
     usual = context.codegen()
     context._internal_codegen = _parts()  # noqa: SLF001 (has no public setter)
+    _Function.get_call_type = _call_type
     try:
         yield
     finally:
         context._internal_codegen = usual  # noqa: SLF001
+        _Function.get_call_type = _usual_type
 
 
 def compile_entry(function: Callable[..., Any], signature: Any) -> tuple[str, bytes]:
@@ -101,6 +128,8 @@ def compile_entry(function: Callable[..., Any], signature: Any) -> tuple[str, by
     The caller holds numba's lock.
     """
     with _only_written():
-        entry = _numba.cfunc(signature, error_model="numpy")(function)
+        entry = _numba.cfunc(
+            signature, error_model="numpy", pipeline_class=KernelCompiler
+        )(function)
     library = entry._library  # noqa: SLF001 (numba's own store reads it, too)
     return entry.native_name, _parts().compiled(library, entry.native_name)
