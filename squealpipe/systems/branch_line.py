@@ -11,6 +11,7 @@ from squealpipe.systems.continuation import (
     ContinuationState,
     PathEquations,
     PseudoArclength,
+    length_of,
 )
 
 Vector = NDArray[np.float64]
@@ -55,7 +56,7 @@ class Line(Generic[Found]):
                 for s in (one, other)
             ]
             bend = (1.0 - part) * slopes[0] - part * slopes[1]
-            if not np.linalg.norm(bend) < np.linalg.norm(step):
+            if not length_of(bend) < length_of(step):
                 bend = np.zeros_like(step)
             guess = one.point + part * step + part * (1.0 - part) * bend
             state = self.algorithm.solve(

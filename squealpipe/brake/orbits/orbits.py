@@ -71,8 +71,10 @@ class Orbit:
 
     def flight(self, threshold: float) -> float:
         """Time above the threshold within half a period."""
-        durations = np.diff([0.0, *self.switches, self.point[2]])
-        return float(durations[int(self.point[1] <= threshold) :: 2].sum())
+        times = [0.0, *self.switches.tolist(), float(self.point[2])]
+        first = int(self.point[1] <= threshold)
+        legs = range(first, len(times) - 1, 2)
+        return float(sum(times[i + 1] - times[i] for i in legs))
 
     def largest_y(self, system: PiecewiseLinearSystem) -> float:
         """Largest y over the period."""
@@ -90,7 +92,7 @@ class _Shot(NamedTuple):
     segments: Vector
     switches: Vector
     final: Vector
-    legs: int = 0
+    legs: int
 
 
 class OrbitEquations:
@@ -106,7 +108,8 @@ class OrbitEquations:
         self.system, self.rows = system, system.rows
         self.fastest, self.work = float(fastest(system.rows)), 0.0
         nothing = np.empty(0)
-        self._latest = _Shot(nothing, nothing, nothing, nothing, nothing, nothing)
+        self._latest = _Shot(nothing, nothing, nothing, nothing, nothing, nothing, 0)
+        self._latest_orbit: Orbit | None = None
 
     def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
         """Return the velocities after half a period, (2,), and their derivatives by z, (2, 3)."""
@@ -116,18 +119,25 @@ class OrbitEquations:
     def orbit(self, z: Vector) -> Orbit:
         """Return the orbit of a solution z."""
         shot = self._shot(z)
-        return Orbit(
-            z,
-            shot.final[:2],
-            shot.switches[: shot.legs - 1],
-            float(stability_index(self.rows, shot.segments, shot.legs)),
-            float(np.abs(shot.velocities).max()),
-        )
+        if self._latest_orbit is None:
+            x_speed, y_speed = shot.velocities.tolist()
+            self._latest_orbit = Orbit(
+                z,
+                shot.final[:2],
+                shot.switches[: shot.legs - 1],
+                float(stability_index(self.rows, shot.segments, shot.legs)),
+                max(abs(x_speed), abs(y_speed)),
+            )
+        return self._latest_orbit
 
     def sense(self, state: ContinuationState) -> float:
         """Return 1 where a branch runs along the cross product of both gradients, else −1."""
-        gradients = self._shot(state.point).gradients
-        return float(np.sign(np.linalg.det([*gradients, state.tangent])))
+        first, second = self._shot(state.point).gradients.tolist()
+        along = (
+            (first[i - 2] * second[i - 1] - first[i - 1] * second[i - 2]) * each
+            for i, each in enumerate(state.tangent.tolist())
+        )
+        return float(np.sign(sum(along)))
 
     def at_other_rest(self, z: Vector, direction: Vector) -> Vector:
         """Return a direction of a branch, (3,), as it is at the other instant of rest."""
@@ -137,20 +147,17 @@ class OrbitEquations:
 
     def _shot(self, z: Vector) -> _Shot:
         if z is not self._latest.point:
-            shot = _Shot(
-                z,
-                np.empty(2),
-                np.empty((2, 3)),
-                np.empty((shooting_limits.segments, 9)),
-                np.empty(shooting_limits.segments),
-                np.empty(4),
-            )
-            _, residual, gradients, segments, switches, final, _ = shot
-            work = segments, switches, residual, gradients, final
+            velocities, gradients, final = np.empty(2), np.empty((2, 3)), np.empty(4)
+            segments = np.empty((shooting_limits.segments, 9))
+            switches = np.empty(shooting_limits.segments)
+            work = segments, switches, velocities, gradients, final
             legs = rest_conditions(self.rows, z, *work)
             if not legs:
-                shot.velocities.fill(np.nan)
-            self._latest = shot._replace(legs=legs)
+                velocities.fill(np.nan)
+            self._latest = _Shot(
+                z, velocities, gradients, segments, switches, final, legs
+            )
+            self._latest_orbit = None
         return self._latest
 
 

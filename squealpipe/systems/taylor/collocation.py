@@ -32,6 +32,15 @@ def _integrate(rates: Any, up_to: Any, states: Any) -> None:
 
 
 @part
+def _add_product(slope: Any, states: Any, rates: Any) -> None:
+    """Add a slope times a row of states to a row of rates."""
+    columns, steps = rates.shape
+    for c in range(columns):
+        for s in range(steps):
+            rates[c, s] += slope[s] * states[c, s]
+
+
+@part
 def _multiply(slopes: Any, lengths: Any, first: int, states: Any, rates: Any) -> None:
     """Rates at the nodes from the states there, over some of the steps."""
     nodes, n, columns, steps = rates.shape
@@ -45,10 +54,7 @@ def _multiply(slopes: Any, lengths: Any, first: int, states: Any, rates: Any) ->
             for j in range(n):
                 slope = slopes[i, j, node, first:last]
                 if slope.any():
-                    for c in range(columns):
-                        rate, state = rates[node, i, c], states[node, j, c]
-                        for s in range(steps):
-                            rate[s] += slope[s] * state[s]
+                    _add_product(slope, states[node, j], rates[node, i])
             for c in range(columns):
                 rate = rates[node, i, c]
                 for s in range(steps):
