@@ -11,7 +11,15 @@ import scipy.linalg as la
 from PIL import Image
 from scipy.io import mmwrite
 
-from squealpipe import Contact, Structure, load, plot, save, squealing_modes
+from squealpipe import (
+    Contact,
+    Structure,
+    load,
+    operating_map,
+    plot,
+    save,
+    squealing_modes,
+)
 from squealpipe.cli import run
 from squealpipe.codes import Verdict
 from squealpipe.plotting import picture
@@ -22,7 +30,8 @@ from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal.plant import Plant, in_modes
 from squealpipe.structures.squeal.remedies import added_damping
 from squealpipe.study.report.answer import first_lines
-from squealpipe.study.report.squealing import headline, level, lines
+from squealpipe.study.report.operating import lines as words_of_a_map
+from squealpipe.study.report.squealing import attractors, headline, level, lines
 from squealpipe.study.structure_study import (
     modes_over_friction,
     read_structure,
@@ -372,14 +381,13 @@ def test_commands_and_studies_run_modes_up_to_20_khz_and_say_so(
         assert run(["assess", "noisy.yaml", *one, *written]) == 1
 
 
-@pytest.mark.parametrize("size", [8, 12])
-def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_work(size):
-    """It ended in "array must not contain infs or NaNs", an overflow, or a longer t_end."""
+def with_an_unlimited_mode(size):
+    """Two modes at a contact, and one that grows at 503.8 kHz and has no part in it."""
     heard = two_modes(0.3)
     stiffness = 1e13 * np.eye(size)
     stiffness[:2, :2] = heard.stiffness.toarray()
     stiffness[2, 3], stiffness[3, 2] = 1e12, -1e12
-    structure = Structure(
+    return Structure(
         np.eye(size),
         stiffness,
         contacts=heard.contacts,
@@ -387,12 +395,22 @@ def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_wor
         mu=0.3,
         belt_speed=-2.0,
     )
+
+
+@pytest.mark.parametrize("size", [8, 12])
+def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_work(size):
+    """It ended in "array must not contain infs or NaNs", an overflow, or a longer t_end."""
+    structure = with_an_unlimited_mode(size)
     answer = squealing_modes(structure, samples=1, workers=1)
     said = headline(answer)
     assert said.startswith(
         "Undetermined: a small push grows without bound, since no contact limits the mode at "
         "503.8 kHz; modal_damping larger by 0.0303 stops it, frequency_max="
     )
+    starts = list(attractors(answer))
+    assert starts == [
+        said.replace("Undetermined: a small push grows", "100 % of random starts grow")
+    ]
     # s² + 2 ζ ω s + ω² ± i c = 0 is neutral at ζ = c/(2 ω²), of which 0.02 are there
     assert float(answer.added_damping) == pytest.approx(0.03, rel=1e-6)
     band = float(said.split("frequency_max=")[1].split()[0])
@@ -410,6 +428,25 @@ def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_wor
     assert "grows without bound, since nothing limits it at 504 kHz" in told[0]
     assert told[2:4] == ["Level: not known.", "Motion: not known."]
     assert "nan" not in " ".join(told)
+
+
+def test_operating_points_at_which_a_mode_grows_without_bound_are_told_so():
+    """They were told "not settled in time", as is one whose push runs out of time."""
+    points = operating_map(
+        with_an_unlimited_mode(8), pressure=[1.0, 2.0], mu=[0.1, 0.3], workers=1
+    )
+    assert (points.outcome == Outcome.not_finite).all()
+    remedy = (
+        "a small push grows without bound, since no contact limits the mode at 503.8 kHz; more "
+        "modal_damping stops it, frequency_max=453437 leaves it out."
+    )
+    *_, told = words_of_a_map(points)
+    assert told == f"Undetermined at 4 of 4 operating points: {remedy}"
+    points.outcome[0, 0, 0] = Outcome.unresolved
+    *_, told = words_of_a_map(points)
+    assert told.endswith(
+        f". At 3 of them {remedy} The others: not settled in time, or no steady sliding."
+    )
 
 
 def two_pads():

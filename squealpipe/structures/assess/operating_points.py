@@ -46,7 +46,7 @@ _MEASURED = ("frequency", "velocity_rms")
 VALUES = (
     *_MEASURED,
     *map(error_of, _MEASURED),
-    *("separated_fraction", "growth_rate", "friction"),
+    *("separated_fraction", "growth_rate", "leading_frequency", "friction"),
 )
 FLAGS = ("verdict", "unstable_modes", "outcome")
 
@@ -363,9 +363,14 @@ def _of_point(design: Design, family: Structures) -> dict[str, Any]:
     known: dict[str, Any] = {
         "verdict": run.verdict,
         "growth_rate": float(plant.spectrum.values.real.max()),
+        "leading_frequency": float(
+            plant.frequencies[plant.spectrum.values.real.argmax()]
+        ),
         "unstable_modes": plant.unstable.size,
         "outcome": Outcome.converged if run.agrees else Outcome.unresolved,
     }
+    if run.unbounded:
+        known["outcome"] = Outcome.not_finite
     if run.quiet:
         still = ("velocity_rms", "separated_fraction", *map(error_of, _MEASURED))
         return nothing | known | dict.fromkeys(still, 0.0)

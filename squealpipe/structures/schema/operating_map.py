@@ -54,6 +54,12 @@ def _map_over(name: str, last: str, coordinate: Variable) -> DatasetSchema:
                 "what steady sliding ends in after a push", Verdict, *point
             ),
             "growth_rate": or_nan("largest growth rate of small motions", "s-1", point),
+            "leading_frequency": or_nan(
+                "frequency of the mode that grows fastest or decays slowest",
+                "Hz",
+                point,
+                optional=True,
+            ),
             "unstable_modes": count("modes of steady sliding that grow", *point),
             "frequency": or_nan(
                 "strongest line of the velocity", "Hz", point, rtol=1e-2
@@ -145,7 +151,12 @@ def _map_over(name: str, last: str, coordinate: Variable) -> DatasetSchema:
             "n_modes": count("modes in which the structure was run"),
             "outcome": outcome(
                 *point,
-                among=(Outcome.converged, Outcome.unresolved, Outcome.no_sliding_state),
+                among=(
+                    Outcome.converged,
+                    Outcome.unresolved,
+                    Outcome.not_finite,
+                    Outcome.no_sliding_state,
+                ),
             ),
         },
     )

@@ -268,6 +268,11 @@ squealing_schema = DatasetSchema(
         "share_undetermined": Variable(
             "share of random starts that did not settle within the horizon", atol=0.1
         ),
+        "share_unbounded": Variable(
+            "share of random starts that grow beyond all that contacts limit",
+            atol=0.1,
+            optional=True,
+        ),
         "ends_at": count("attractor of the random start, -1: undetermined", "sample"),
         "start_energy": Variable(
             "energy of the random start over that of the preload", dims=("sample",)

@@ -170,6 +170,8 @@ def squealing_of(
     of_mode = _of_modes(plant, settled[: len(pushes)], numbers, modes)
     of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
+    if unbounded := [run for run in settled[len(pushes) :] if run.unbounded]:
+        shares["share_unbounded"] = len(unbounded) / samples
     if refines and not plant.obstacle:
         with stage("levels in more modes"):
             motions = [runs[0] for runs in members]

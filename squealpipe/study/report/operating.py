@@ -7,7 +7,9 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Verdict
+from squealpipe.schema import Outcome
 from squealpipe.structures.schema.operating_map import Match
+from squealpipe.study.report.squealing import without_bound
 from squealpipe.text import number, off_by, percent
 from squealpipe.units import engineering
 
@@ -58,10 +60,22 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
             names = dataset.attrs["not_compared"]
             yield f"  Not compared, since the map does not vary it: {names}."
     if unknown:
-        yield (
-            f"Undetermined at {unknown} of {total} operating points: not settled in time, or no "
-            "steady sliding."
-        )
+        yield f"Undetermined at {unknown} of {total} operating points{_reasons(dataset)}"
+
+
+def _reasons(dataset: xr.Dataset) -> str:
+    """Say why points are undetermined: those that grow without bound have remedies."""
+    unknown = dataset.verdict.values == Verdict.undetermined
+    unbounded = unknown & (dataset.outcome.values == Outcome.not_finite)
+    others = "not settled in time, or no steady sliding."
+    if not unbounded.any():
+        return f": {others}"
+    frequencies = np.where(unbounded, dataset.leading_frequency.values, np.inf)
+    lowest = xr.Dataset({"frequency": frequencies.min()})
+    told = f"a small push grows {without_bound(lowest)}"
+    if (unbounded == unknown).all():
+        return f": {told}"
+    return f". At {int(unbounded.sum())} of them {told} The others: {others}"
 
 
 def _lines_of_the_list(dataset: xr.Dataset) -> Iterator[str]:

@@ -94,7 +94,7 @@ def _undetermined(answer: xr.Dataset) -> str:
     if beyond := _ends_beyond(answer):
         return beyond
     if _grows_without_bound(answer, 0):
-        return f"{said}: {_nothing_limits(answer)}"
+        return f"{said}: a small push grows {_nothing_limits(answer)}"
     return (
         f"{said}: the motion after a small push did not settle, or its kind is "
         f"not clear.{damping_advice(answer)}"
@@ -108,16 +108,27 @@ def _grows_without_bound(answer: xr.Dataset, index: int) -> bool:
 
 
 def _nothing_limits(answer: xr.Dataset) -> str:
-    """Say that a small push grows without bound, and what changes that."""
-    mode = answer.isel(mode=0)
-    band = math.floor(0.9 * float(mode.frequency))
-    told = (
-        f"a small push grows without bound, since no contact limits {_mode_at(mode)}; "
-    )
-    damping = float(answer.added_damping)
+    """Say that what a push along an unstable mode does has no bound, and what changes that."""
+    mode = answer.isel(mode=int(answer.grows_without_bound.values.argmax()))
+    damping, damped = float(answer.added_damping), ""
     if 0.0 < damping < np.inf:
-        told += f"modal_damping larger by {number(1.01 * damping)} stops it, "
-    return f"{told}frequency_max={band} leaves it out."
+        damped = f"modal_damping larger by {number(1.01 * damping)} stops it, "
+    return without_bound(mode, damped)
+
+
+def without_bound(
+    mode: xr.Dataset, damped: str = "more modal_damping stops it, "
+) -> str:
+    """Say that a mode grows without bound, but for the verb, and what changes that.
+
+    Args:
+        damped: words for the damping that stops it.
+    """
+    band = math.floor(0.9 * float(mode.frequency))
+    return (
+        f"without bound, since no contact limits {_mode_at(mode)}; {damped}"
+        f"frequency_max={band} leaves it out."
+    )
 
 
 def _ends_beyond(answer: xr.Dataset) -> str | None:
@@ -453,9 +464,14 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
             f"{engineering(float(one.velocity_peak), 'm s-1')}; open {_of_contacts(one)}."
         )
     if float(answer.share_undetermined) > 0:
-        remedy = "" if "grows_without_bound" in answer else "; give a longer t_end"
-        share = percent(float(answer.share_undetermined))
-        yield f"{share} of random starts did not settle{remedy}."
+        unbounded = float(answer.get("share_unbounded", 0.0))
+        if unbounded > 0.0:
+            limits = "without bound."
+            if "grows_without_bound" in answer:
+                limits = _nothing_limits(answer)
+            yield f"{percent(unbounded)} of random starts grow {limits}"
+        if (rest := float(answer.share_undetermined) - unbounded) > 0.0:
+            yield f"{percent(rest)} of random starts did not settle; give a longer t_end."
 
 
 def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
