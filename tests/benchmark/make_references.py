@@ -28,6 +28,13 @@ COMPUTED, WRITTEN = 50, 30
 TOLERANCE = np.longdouble(1e-19)
 COLUMNS = 12
 """Of the extrapolation table: midpoint rules of 2, 4, …, 24 steps."""
+with mpmath.workdps(DIGITS):
+    RATIOS = {
+        (column, k): mpmath.mpf(column) ** 2 / mpmath.mpf(column - k) ** 2 - 1
+        for column in range(1, COLUMNS + 1)
+        for k in range(1, column)
+    }
+"""Of the squared steps of a rule and of the k-th before it, less one."""
 STEP_ERROR = mpmath.mpf(10) ** -24
 SAMPLES = 24
 CLOSE = 1e-22
@@ -102,16 +109,17 @@ def extrapolated(field, t, y, h):
     for column in range(1, COLUMNS + 1):
         n = 2 * column
         part = h / n
+        twice = 2 * part
         before, here = y, [a + part * b for a, b in zip(y, first, strict=True)]
         path = [y, here]
         for k in range(1, n):
             rates = field(t + k * part, here)
-            after = [a + 2 * part * b for a, b in zip(before, rates, strict=True)]
+            after = [a + twice * b for a, b in zip(before, rates, strict=True)]
             before, here = here, after
             path.append(here)
         row = [here]
         for k, previous in enumerate(rows[-1] if rows else [], start=1):
-            ratio = mpmath.mpf(column) ** 2 / mpmath.mpf(column - k) ** 2 - 1
+            ratio = RATIOS[column, k]
             row.append(
                 [a + (a - b) / ratio for a, b in zip(row[-1], previous, strict=True)]
             )
