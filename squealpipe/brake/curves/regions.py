@@ -98,13 +98,20 @@ def loops_of(lines: ZeroLines, *, positive: bool, flat: float = 1e-6) -> list[Lo
     length = np.linalg.norm(chord, axis=1)
     bulge = length**2 * (slopes[:, 0] - slopes[:, 1]) / 12.0
     count = np.ceil(np.sqrt(length * np.abs(slopes).sum(axis=1) / (8.0 * flat)))
+    more = np.maximum(count, 1.0).astype(int) - 1
+    k, last = np.repeat(np.arange(len(count)), more), np.cumsum(more)
+    t = (np.arange(1, k.size + 1) - (last - more)[k]) / count[k]
+    height = cubic(t, slopes[k])
+    inner = (
+        lines.place[lines.chords[k, 0]]
+        + t[:, None] * chord[k]
+        + height[:, None] * left[k]
+    )
     between = {}
-    for k in np.flatnonzero(count > 1):
-        t = np.arange(1, count[k]) / count[k]
-        height = cubic(t, slopes[k : k + 1])
-        start, end = lines.chords[k]
-        inner = lines.place[start] + t[:, None] * chord[k] + height[:, None] * left[k]
-        between[start, end], between[end, start] = inner, inner[::-1]
+    for (start, end), n, to in zip(lines.chords.tolist(), more, last, strict=True):
+        if n:
+            points = inner[to - n : to]
+            between[start, end], between[end, start] = points, points[::-1]
     chords = lines.chords if positive else lines.chords[:, ::-1]
     place = np.concatenate([lines.place, SQUARE_CORNERS])
     sign = -1.0 if positive else 1.0

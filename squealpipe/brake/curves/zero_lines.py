@@ -252,23 +252,28 @@ class ZeroLines(Chords):
             positive[1:, 1:],
             positive[:-1, 1:],
         ]
-        sides = np.stack([along[:, :-1], up[1:], along[:, 1:], up[:-1]], axis=-1)
-        around = np.stack(corners, axis=-1)
-        falls = around & ~np.roll(around, -1, axis=-1)
-        rises = ~around & np.roll(around, -1, axis=-1)
-        once = falls.sum(axis=-1) == 1
+        # the lines cross few of the cells
+        mixed = np.argwhere(
+            np.any([each != corners[0] for each in corners[1:]], axis=0)
+        )
+        i, j = mixed.T
+        sides = np.stack([along[i, j], up[i + 1, j], along[i, j + 1], up[i, j]], axis=1)
+        around = np.stack([each[i, j] for each in corners], axis=1)
+        falls = around & ~np.roll(around, -1, axis=1)
+        rises = ~around & np.roll(around, -1, axis=1)
+        once = falls.sum(axis=1) == 1
         chords = [
             np.stack([sides[once][falls[once]], sides[once][rises[once]]], axis=1)
         ]
-        cells = [np.argwhere(once)]
-        saddles = np.argwhere(falls.sum(axis=-1) == 2)
-        if len(saddles):
-            through = self.value((saddles + 0.5) / (len(positive) - 1)) > 0.0
-            for (i, j), joins in zip(saddles, through, strict=True):
-                for side in np.flatnonzero(falls[i, j]):
+        cells = [mixed[once]]
+        twice = np.flatnonzero(falls.sum(axis=1) == 2)
+        if len(twice):
+            middles = (mixed[twice] + 0.5) / (len(positive) - 1)
+            for k, joins in zip(twice, self.value(middles) > 0.0, strict=True):
+                for side in np.flatnonzero(falls[k]):
                     other = (side + (1 if joins else -1)) % 4
-                    chords.append(sides[i, j][[[side, other]]])
-                    cells.append(np.array([[i, j]]))
+                    chords.append(sides[k][[[side, other]]])
+                    cells.append(mixed[[k]])
         return np.concatenate(chords), np.concatenate(cells)
 
     def _add(self, places: Vector, way: Vector, value: Vector, rate: Vector) -> Indices:
