@@ -11,9 +11,9 @@ from squealpipe.parameters import Parameters
 ANGLES = {name: np.array([0.0, math.pi / 2, math.pi]) for name in ("alpha1", "alpha2")}
 
 
-def square(speed, model, **parameters):
+def square(speed, model, time=6.0, **parameters):
     params = Parameters(belt_speed=speed, **parameters)
-    options = {"t_end": 6.0 * params.time_unit, "tol": 1e-9, "workers": 1}
+    options = {"t_end": time * params.time_unit, "tol": 1e-9, "workers": 1}
     return contact.Square(params, {}, ANGLES, options, model)
 
 
@@ -56,3 +56,18 @@ def test_other_motions_are_followed_anew():
     ):
         (_, runs), (_, more) = followed(fast, other)
         assert more > 0.5 * runs
+
+
+def test_masses_as_fast_as_the_belt_are_found_by_few_runs_that_see_speeds():
+    fluttering, axis = square(60.0, "A1", time=150.0), np.linspace(0.02, 0.97, 21)
+    places = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    run, seen = fluttering._run, []
+    fluttering._run = lambda places, model, tracked: (
+        seen.append(len(places) * ("vx" in tracked))
+        or run(places, model, tracked=tracked)
+    )
+    fluttering.reserve(places)
+    fast = run(places, "A1-no-separation", tracked=("vx",)).early_max_vx >= 60.0
+    assert fast.any()
+    assert np.array_equal(fluttering.faster[0][0], places[fast])
+    assert sum(seen) < 10
