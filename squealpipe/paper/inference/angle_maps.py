@@ -150,21 +150,25 @@ def _runs(
     events seem to accumulate, is run with the tolerance asked for.
     """
     outcome = np.full(alpha1.size, int(Outcome.unresolved), np.int8)
-    speed, rows = np.zeros(alpha1.size), np.arange(alpha1.size)
-    for tol, size in ((max(candidates.tol, 1e-6), 30.0), (candidates.tol, 1.0)):
-        some = replace(candidates.subset(rows), tol=tol)
-        runs = some.ensemble(
-            alpha1[rows],
-            alpha2[rows],
-            t_end=HORIZON * some.time_unit,
-            stop_at_first_separation=True,
-            tracked=tracked,
-            size=size,
-        )
-        outcome[rows] = runs.outcome
-        if tracked:
-            speed[rows] = runs.early_max_vx
-        rows = rows[~np.isin(runs.outcome, (Outcome.converged, Outcome.separated))]
-        if not rows.size:
-            break
+    speed, every = np.zeros(alpha1.size), np.arange(alpha1.size)
+    # runs side by side: the memory of more would come fresh from the system each time
+    at_once = 2**14
+    for first in range(0, alpha1.size, at_once):
+        rows = every[first : first + at_once]
+        for tol, size in ((max(candidates.tol, 1e-6), 30.0), (candidates.tol, 1.0)):
+            some = replace(candidates.subset(rows), tol=tol)
+            runs = some.ensemble(
+                alpha1[rows],
+                alpha2[rows],
+                t_end=HORIZON * some.time_unit,
+                stop_at_first_separation=True,
+                tracked=tracked,
+                size=size,
+            )
+            outcome[rows] = runs.outcome
+            if tracked:
+                speed[rows] = runs.early_max_vx
+            rows = rows[~np.isin(runs.outcome, (Outcome.converged, Outcome.separated))]
+            if not rows.size:
+                break
     return outcome, speed
