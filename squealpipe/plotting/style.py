@@ -353,4 +353,10 @@ def _draw_png(canvas: Any, content: io.BytesIO) -> None:
     tags.add_text("Software", "squealpipe")
     dots = canvas.figure.dpi
     opaque = np.asarray(canvas.buffer_rgba())[..., :3]
-    Image.fromarray(opaque).save(content, "png", dpi=(dots, dots), pnginfo=tags)
+    # level 3 takes two thirds of the time of 6, for files larger by 7 %
+    written: dict[str, Any] = {
+        "dpi": (dots, dots),
+        "pnginfo": tags,
+        "compress_level": 3,
+    }
+    Image.fromarray(opaque).save(content, "png", **written)
