@@ -51,8 +51,7 @@ _Passes: Any = PassManager
 class KernelCompiler(_Compiler):  # type: ignore[misc]
     """numba's passes that loops over numbers need.
 
-    The others look for closures, generators, expressions of whole arrays and the like: a tenth of
-    the time in vain.
+    The others look for closures, generators, expressions of whole arrays and the like in vain.
     """
 
     def define_pipelines(self) -> list[Any]:
