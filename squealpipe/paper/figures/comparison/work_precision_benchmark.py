@@ -90,9 +90,9 @@ def draw(benchmark: xr.Dataset) -> Figure:
     for letter, pair, group in zip(
         "abcdefghijklmnopqrstuvwxyz", panels, groups, strict=False
     ):
-        of_group = known.isel(problem=known.group.values == group)
+        runs = medians(known.isel(problem=known.group.values == group))
         for panel, cost in zip(pair, COST_NAMES, strict=True):
-            draw_methods(panel, medians(of_group), cost, 1.0, methods)
+            draw_methods(panel, runs, cost, 1.0, methods)
             panel.set_ylabel(COST_NAMES[cost], fontsize=6, labelpad=1)
             panel.tick_params(labelsize=6)
         panel_letter(pair[0], letter, group)
