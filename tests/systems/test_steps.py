@@ -345,3 +345,34 @@ def test_a_pair_that_chatters_does_so_whatever_time_its_run_has_left(restitution
         run = PAIR.simulate(float(long.end_time) + later, **options)
         assert run.outcome == Outcome.accumulation
         assert abs(run.end_time - long.end_time) < 1e-6
+
+
+def test_a_crossing_at_the_very_end_of_a_step_is_not_passed():
+    """A step saw it beyond its end, and the next one, whose surface has other round-off, before.
+
+    It was passed where the surface is 0, or a few ulps beyond, as the next step starts.
+    """
+    swing = System(
+        "swing",
+        states={"x": "1", "y": "1", "z": "1", "w": "1"},
+        parameters={"level": 0.0, "speed": 1.0},
+        regimes={"flies": {}, "landed": {}},
+        field=lambda t, s, p, r: {
+            "x": 1e-3 * s.x * s.x - p.speed,
+            "y": -p.speed,
+            "z": s.w,
+            "w": -s.z,
+        },
+        switches=landing(lambda t, s, p, r: 0.1 * s.x + 0.2 * s.y - p.level),
+        start={"x": 3.0, "y": 3.0, "z": 0.7, "w": 0.4, "regime": "flies"},
+    )
+    rng = np.random.default_rng(4)
+    for steps in 8 * (1, 2, 4, 7):
+        first, speed = float(rng.uniform(33.0, 45.0)), float(rng.uniform(0.8, 1.3))
+        given = {"start": {"x": first, "y": 0.7 * first}, "speed": speed, "workers": 1}
+        # the state at the end of the last of the steps
+        end = swing.ensemble(12.0, level=-99.0, max_steps=steps, **given)
+        height = float(0.1 * end.x + 0.2 * end.y)
+        levels = height + 0.5 * np.spacing(height) * np.arange(-4, 5)
+        run = swing.ensemble(12.0, level=levels, **given)
+        assert (run.count_landing == 1).all()

@@ -292,10 +292,16 @@ def first_crossing(
     falls, rises, fresh, at_once, noise, drift = watch
     start, side = 0.0, coefficients[variable, 0, lane]
     floor = hidden_below(coefficients, variable, lane, step)
+    hidden = side == 0.0
     if not fresh:  # a step may start where round-off hides the side
-        noise, drift = floor, 0.0
-    hidden = abs(side) <= noise
-    if fresh or (hidden and is_hidden(coefficients, variable, lane, step, 0.0, noise)):
+        # or leads past a root that the step before did not reach, where it would be beyond
+        is_past = at_once and falls != rises and (side < 0.0) == falls
+        hidden |= is_past and abs(side) <= max(noise, floor)
+        noise, drift = max(noise, floor) if is_past else floor, 0.0
+        hidden |= abs(side) <= noise and is_hidden(
+            coefficients, variable, lane, step, 0.0, noise
+        )
+    if fresh or hidden:
         start, side = _leaves_zero(coefficients, variable, lane, step, noise, drift)
         if at_once and ((side < 0.0 and falls) or (side > 0.0 and rises)):
             return 0.0, step

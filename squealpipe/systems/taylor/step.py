@@ -190,20 +190,24 @@ def _free(series: int, terms: int, step: Any, lanes: int) -> Any:
     """Those of some lanes in which a surface has no root in the step.
 
     Where all its terms together are below its start it has none, which is looked at first; how far
-    it bends is computed only if that does not tell of all lanes.
+    it bends is computed only if that does not tell of all lanes. What round-off may have hidden,
+    at the end of this step or of the one before, is looked at.
     """
     change = magnitude(load(series + (terms - 1) * ROW))
     for k in range(terms - 2, 0, -1):
         change = fma(change, step, magnitude(load(series + k * ROW)))
-    free = bits_below(change * step, magnitude(load(series)))
+    start, change = magnitude(load(series)), change * step
+    # relative to the terms: of their sum, and of a surface that is computed anew from the state
+    rounding = 1e-14
+    free = bits_below(fma(change, splat(rounding), change), start)
     if lanes & ~free:
-        free |= _bends_little(series, terms, step)
+        free |= _bends_little(series, terms, step, (start + change) * splat(rounding))
     return free
 
 
 @inline
-def _bends_little(series: int, terms: int, step: Any) -> Any:
-    """Lanes in which both ends of a surface are further from zero than it bends."""
+def _bends_little(series: int, terms: int, step: Any, rounding: Any) -> Any:
+    """Lanes in which both ends of a surface are further from zero than it bends, and round-off."""
     value, bend = load(series + (terms - 1) * ROW), splat(0.0)
     for k in range(terms - 1, 1, -1):
         row = load(series + k * ROW)
@@ -214,7 +218,7 @@ def _bends_little(series: int, terms: int, step: Any) -> Any:
     value = fma(value, step, first)
     free = bits_below(splat(0.0), first * value)
     nearest = smaller(magnitude(first), magnitude(value))
-    return free & bits_below(bend * step * step * 0.125, nearest)
+    return free & bits_below(fma(bend * step, step * 0.125, rounding), nearest)
 
 
 @inline
