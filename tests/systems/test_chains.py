@@ -8,6 +8,7 @@ from squealpipe.systems.burridge_knopoff import burridge_knopoff
 from squealpipe.systems.gear_pair import gear_pair
 
 from squealpipe import labels
+from tests.oracles.written import written
 
 
 class Blocks:
@@ -130,6 +131,7 @@ def flank_motion(p, side, t0, x0, v0):
     return at
 
 
+@written
 def gear_events(p, x, v, most):
     """(time, name) of the events, by closed forms and a search in small steps."""
     side, time, found = 1, 0.0, []

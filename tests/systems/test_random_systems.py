@@ -1,6 +1,7 @@
 """Systems from a generator, event by event against DOP853, and what is refused."""
 
 import os
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from squealpipe.schema import Outcome
 from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 from tests.oracles.definition import Definition
+from tests.oracles.written import written
 from tests.samples import some
 
 T_END, MOST_EVENTS = 15.0, 60
@@ -130,6 +132,7 @@ def stick(rng, names):
     }
 
 
+@lru_cache(maxsize=1)
 def random_system(seed):
     """A system of 2 to 6 states: patches for even seeds, stick for odd ones."""
     rng = np.random.default_rng(seed)
@@ -141,6 +144,15 @@ def random_system(seed):
         **(patches, stick)[seed % 2](rng, names),
         period=lambda p: 2.0 * np.pi / p.omega,
     )
+
+
+@written
+def run_apart(seed, start, given, max_step):
+    """Events and last state by DOP853."""
+    system = random_system(seed)
+    truth = Definition(system, given, max_step=max_step)
+    begin = [start[name] for name in system.states]
+    return truth.run(begin, system.start["regime"], T_END, MOST_EVENTS)
 
 
 @pytest.mark.parametrize(
@@ -181,10 +193,7 @@ def test_events_of_random_systems_are_those_of_dop853(seed, draws):
         accumulates, trapped = int(run.outcome) == Outcome.accumulation, False
         # DOP853 sees two crossings in one of its steps as none, or as one at its start
         for max_step in (0.2, 0.01, 0.001, 1e-4):
-            truth = Definition(system, given, max_step=max_step)
-            begin = [start[name] for name in system.states]
-            regime = system.start["regime"]
-            events, z = truth.run(begin, regime, T_END, MOST_EVENTS)
+            events, z = run_apart(seed, start, given, max_step)
             if accumulates:  # where it falls through the surface, or is beyond all
                 trapped = len(events) == MOST_EVENTS
                 trapped = trapped and abs(events[-1][0] - float(run.end_time)) < 1e-8

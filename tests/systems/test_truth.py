@@ -24,6 +24,7 @@ from squealpipe.systems.shipped.rigid_pad import (
     rigid_pad,
     spring,
 )
+from tests.oracles.written import written
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -124,9 +125,12 @@ def test_a_rigid_pad_that_lifts_off_at_either_edge_gains_what_friction_does(tilt
     np.testing.assert_allclose(balance, balance[0], rtol=1e-12)
 
 
-def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
-    """The same field with approaches cut off at zero: continuous, so that one run goes through."""
-    run = rigid_pad.simulate(30.0, start={"theta": 0.1})
+@written
+def contacts_apart(tilt, t_end):
+    """Instants at which leading and trailing edge lift or land, by DOP853.
+
+    The same field with approaches cut off at zero: continuous, so that one run goes through.
+    """
     p, names = SimpleNamespace(**rigid_pad.parameters), rigid_pad.states
 
     def rates(t, z):
@@ -146,10 +150,10 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
             side, SimpleNamespace(**dict(zip(names, z, strict=True))), p
         )
 
-    start = [0.1 if name == "theta" else 0.0 for name in names]
+    start = [tilt if name == "theta" else 0.0 for name in names]
     own = solve_ivp(
         rates,
-        (0.0, 30.0),
+        (0.0, t_end),
         start,
         "DOP853",
         rtol=1e-12,
@@ -157,7 +161,13 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
         max_step=0.02,
         events=[gap(LEADING), gap(TRAILING)],
     )
-    for name, times in zip(("leading", "trailing"), own.t_events, strict=True):
+    return own.t_events
+
+
+def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
+    run = rigid_pad.simulate(30.0, start={"theta": 0.1})
+    edges = zip(("leading", "trailing"), contacts_apart(0.1, 30.0), strict=True)
+    for name, times in edges:
         found = [times_of(run, f"{name}_{what}") for what in ("lifts", "lands")]
         found = np.sort(np.concatenate(found))
         assert found.size > 2

@@ -13,6 +13,7 @@ from squealpipe.parameters import SCENES
 from squealpipe.systems.integrate import RunOptions, integrate
 from squealpipe.systems.shipped.bouncing_ball import bouncing_ball
 from tests.former import FORMER
+from tests.oracles.written import written
 
 COARSE = np.linspace(0.0, 40.0, 61)
 """Fewer than seven instants a period."""
@@ -55,12 +56,16 @@ def test_extremes_of_each_interval_are_those_of_the_closed_form(coarse):
         np.testing.assert_allclose(found, (exact.min(), exact.max()), atol=1e-12)
 
 
-def test_extremes_with_flights_agree_with_another_integrator():
-    """In the frame of A1's equations, written down here; DOP853, dense output, kink by kink."""
-    p, scene = FORMER.with_(mu=0.1), SCENES["F2d"]
-    run = simulate(
-        p, scene.alpha1, scene.alpha2, t_end=20.0, times=np.linspace(0, 20, 21)
-    )
+FLIES, PLACE = FORMER.with_(mu=0.1), SCENES["F2d"]
+
+
+@written
+def extremes_apart(t_end):
+    """Ranges of x, y and vx, and the largest displacement, by DOP853 with dense output.
+
+    In the frame of A1's equations, written down here, kink by kink.
+    """
+    p, scene = FLIES, PLACE
     ends = np.array(
         [
             [p.length1 * np.cos(scene.alpha1), p.length1 * np.sin(scene.alpha1)],
@@ -81,7 +86,7 @@ def test_extremes_with_flights_agree_with_another_integrator():
 
     peer = solve_ivp(
         field,
-        (0.0, 20.0),
+        (0.0, t_end),
         np.zeros(4),
         "DOP853",
         rtol=1e-12,
@@ -89,13 +94,21 @@ def test_extremes_with_flights_agree_with_another_integrator():
         max_step=0.02,
         dense_output=True,
     )
-    fine = peer.sol(np.linspace(0.0, 20.0, 400_001))
-    for row, name in enumerate(("x", "y", "vx")):
+    fine = peer.sol(np.linspace(0.0, t_end, 400_001))
+    ranges = [(row.min(), row.max()) for row in fine[:3]]
+    return ranges, np.hypot(fine[0], fine[1]).max()
+
+
+def test_extremes_with_flights_agree_with_another_integrator():
+    run = simulate(
+        FLIES, PLACE.alpha1, PLACE.alpha2, t_end=20.0, times=np.linspace(0, 20, 21)
+    )
+    ranges, reach = extremes_apart(20.0)
+    for name, (lowest, highest) in zip(("x", "y", "vx"), ranges, strict=True):
         low, high = extremes(run, name)
-        assert np.nanmin(low) == pytest.approx(fine[row].min(), rel=1e-6)
-        assert np.nanmax(high) == pytest.approx(fine[row].max(), rel=1e-6)
+        assert np.nanmin(low) == pytest.approx(lowest, rel=1e-6)
+        assert np.nanmax(high) == pytest.approx(highest, rel=1e-6)
     assert np.nanmin(extremes(run, "normalized_contact_force")[0]) == 0.0
-    reach = np.hypot(fine[0], fine[1]).max()
     assert float(run.max_displacement) == pytest.approx(reach, rel=1e-6)
 
 

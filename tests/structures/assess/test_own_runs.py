@@ -10,6 +10,7 @@ from squealpipe.structures.assess.assess import judge_structure
 from squealpipe.structures.assess.cures import cures_of
 from tests.oracles.falling_friction import FallingMotion, table_of
 from tests.oracles.structure_answers import Motion
+from tests.oracles.written import written
 
 CURES = ("mu", "modal_damping", "contact_stiffness", "preload", "weight")
 
@@ -177,10 +178,16 @@ def check_motion(answer, own, time, length):
     assert min(abs(frequency - each) for each in own["frequencies"]) <= allowed
 
 
+@written
+def answer_apart(seed):
+    """What own runs say of a structure."""
+    return Motion(drawn(seed)[1]).answer()
+
+
 def test_level_and_frequency_of_a_structure_that_hammers():
-    scaled, plain, (time, _, length) = drawn(15)
+    scaled, _, (time, _, length) = drawn(15)
     answer = judge_structure(scaled, samples=0, seed=0, tol=1e-12, workers=1)
-    check_motion(answer.without_cures(), Motion(plain).answer(), time, length)
+    check_motion(answer.without_cures(), answer_apart(15), time, length)
 
 
 def check_answer(scaled, plain, units, motion):
