@@ -1,9 +1,10 @@
 """Answers of integrators apart that take long, written down: the tests of each change read them.
 
 ``written.json`` has function → question → answer. What is not there is asked anew, as other seeds
-are; the release tier asks all that is there again (``validation/test_written.py``). Where a question means
-something else than before, as after a change of a random system, its test fails: then delete the
-file, and ``SQUEALPIPE_WRITE=1 python -m pytest`` with the tests that use this writes another.
+are; the release tier asks all that is there again (``validation/test_written.py``). Where a
+question means something else than before, as after a change of a random system, its test fails:
+then delete the file, and ``SQUEALPIPE_WRITE=1 python -m pytest`` with the tests that use this
+writes another.
 """
 
 import functools
