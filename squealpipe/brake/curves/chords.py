@@ -109,5 +109,6 @@ class Chords:
     def tangents(self, chords: Indices) -> Vector:
         """Unit vectors along the lines at both ends, (2, chords, 2)."""
         slope = np.moveaxis(self.slope[chords], 1, 0)
-        slope = slope / np.linalg.norm(slope, axis=-1)[..., None]
+        with np.errstate(invalid="ignore"):  # no tangent where there is no slope
+            slope = slope / np.linalg.norm(slope, axis=-1)[..., None]
         return np.stack([slope[..., 1], -slope[..., 0]], axis=-1)

@@ -161,7 +161,9 @@ class Square:
 
     def touch_time(self, places: Vector, slope: Vector) -> Vector:
         """When contact is lost next to the boundary, over √(m/k1)."""
-        beside = places - LOST_SIDE * slope / np.linalg.norm(slope, axis=1)[:, None]
+        size = np.linalg.norm(slope, axis=1)
+        # where the reserve jumps, as next to a pivot, it may have no slope on either side
+        beside = places - LOST_SIDE * slope / np.where(size > 0.0, size, 1.0)[:, None]
         run = self._run(
             beside, self.model, stop_at_first_separation=True, tracked=("vx",)
         )

@@ -71,3 +71,11 @@ def test_masses_as_fast_as_the_belt_are_found_by_few_runs_that_see_speeds():
     assert fast.any()
     assert np.array_equal(fluttering.faster[0][0], places[fast])
     assert sum(seen) < 10
+
+
+def test_a_place_at_a_jump_of_the_reserve_has_a_time_of_touching():
+    """The slope is zero on both sides of a jump from clipped reserve to clipped reserve."""
+    place = np.array([[0.3, 0.4]])
+    with np.errstate(all="raise"):
+        time = square(100.0, "A1").touch_time(place, np.zeros((1, 2)))
+    assert np.isfinite(time).all()
