@@ -33,6 +33,7 @@ from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numba
+from numba import types
 from numba.core import event, typed_passes, untyped_passes
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager
@@ -46,6 +47,7 @@ _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
 _Dispatcher: Any = CPUDispatcher
 _Compiler: Any = CompilerBase
 _Passes: Any = PassManager
+_Function: Any = types.Function
 
 
 class KernelCompiler(_Compiler):  # type: ignore[misc]
@@ -118,11 +120,33 @@ inline_views = _inner(
 polynomial = _inner(fastmath={"contract"}, **_PART)
 
 
+_usual_type: Any = _Function.get_call_type
+_call_types: dict[Any, Any] = {}
+
+
+def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
+    """Return the signature of a call of a function of numba's, remembered.
+
+    numba tries dozens of candidates for each sum. What it compiles for a call depends on more than
+    the types, and is not remembered.
+    """
+    call = function, tuple(args), tuple(kws.items())
+    found = _call_types.get(call)
+    if found is None:
+        found = _usual_type(function, context, args, kws)
+        if function.get_impl_key(found) != function.typing_key:
+            return found
+        _call_types[call] = found
+    function._impl_keys[found.args] = function.typing_key  # noqa: SLF001
+    return found
+
+
 class _CompilerClock(event.Listener):  # type: ignore[misc]
     """CPU time of this process while something is being compiled, s; inner parts count once.
 
-    Meanwhile those who wait are told so, and Python looks for no garbage: among the millions of
-    objects that numba makes and keeps that takes a seventh of the time.
+    Meanwhile those who wait are told so, types of calls are remembered, and Python looks for no
+    garbage: among the millions of objects that numba makes and keeps that takes a seventh of the
+    time.
     """
 
     def __init__(self) -> None:
@@ -136,6 +160,7 @@ class _CompilerClock(event.Listener):  # type: ignore[misc]
             self._told.enter_context(stage("compiling, once on this machine"))
             self._collects = gc.isenabled()
             gc.disable()
+            _Function.get_call_type = _call_type
         self._depth += 1
 
     def on_end(self, event: Any) -> None:  # noqa: ARG002
@@ -143,6 +168,7 @@ class _CompilerClock(event.Listener):  # type: ignore[misc]
         if self._depth == 0:
             self.total += time.process_time() - self._since
             self._told.close()
+            _Function.get_call_type = _usual_type
             if self._collects:
                 gc.enable()
 

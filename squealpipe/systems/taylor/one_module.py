@@ -18,7 +18,6 @@ from typing import Any
 import llvmlite.binding
 import numba
 from llvmlite.binding import Linkage
-from numba import types
 from numba.core import codegen
 from numba.core.registry import cpu_target
 
@@ -30,7 +29,6 @@ _Library: Any = codegen.JITCodeLibrary
 _Codegen: Any = codegen.JITCPUCodegen
 _target: Any = cpu_target
 _llvm: Any = llvmlite.binding
-_Function: Any = types.Function
 
 
 class _Part(_Library):  # type: ignore[misc]
@@ -106,39 +104,16 @@ def _parts() -> _Parts:
     return _Parts("parts")
 
 
-_usual_type: Any = _Function.get_call_type
-_call_types: dict[Any, Any] = {}
-
-
-def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
-    """Return the signature of a call of a function of numba's, remembered.
-
-    numba tries dozens of candidates for each sum. What it compiles for a call depends on more than
-    the types, and is not remembered.
-    """
-    call = function, tuple(args), tuple(kws.items())
-    found = _call_types.get(call)
-    if found is None:
-        found = _usual_type(function, context, args, kws)
-        if function.get_impl_key(found) != function.typing_key:
-            return found
-        _call_types[call] = found
-    function._impl_keys[found.args] = function.typing_key  # noqa: SLF001
-    return found
-
-
 @contextmanager
 def _only_written() -> Iterator[None]:
     """Let numba compile nothing of what it writes meanwhile."""
     context = _target.target_context
     usual = context.codegen()
     context._internal_codegen = _parts()  # noqa: SLF001 (has no public setter)
-    _Function.get_call_type = _call_type
     try:
         yield
     finally:
         context._internal_codegen = usual  # noqa: SLF001
-        _Function.get_call_type = _usual_type
 
 
 def compile_entry(function: Callable[..., Any], signature: Any) -> tuple[str, bytes]:
