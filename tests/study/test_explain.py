@@ -7,9 +7,11 @@ import subprocess
 import sys
 import textwrap
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from squealpipe.store.rerun.key import PLAN_VARIABLE, file_key, state_key
 from squealpipe.store.rerun.sources import PACKAGE
 from squealpipe.study.durations import JobCost, job_costs, job_times, record_cost
 from squealpipe.study.explain import (
@@ -203,3 +205,32 @@ def test_an_edited_file_that_the_settings_name_is_the_reason(tmp_path, monkeypat
     assert _changed_content(output, made) == "changed: brake.yaml"
     os.utime(table, (1e9 - 1.0, 1e9 - 1.0))
     assert _changed_content(output, made) == "code changed, of module.py"
+
+
+def test_a_result_that_states_another_key_is_planned_though_snakemake_would_not(
+    tmp_path, monkeypatch
+):
+    """Snakemake knows when a file was made, not what is in it: one may be copied from elsewhere."""
+    paths = [f"results/data/{name}.json" for name in ("right", "copied")]
+    made = {
+        path: {
+            "rule": f"make_{Path(path).stem}",
+            "key": file_key(16 * "a", path),
+            "inputs": [],
+            "settings": {},
+            "sources": [],
+        }
+        for path in paths
+    }
+    (tmp_path / "results/data").mkdir(parents=True)
+    for path, key in zip(paths, (16 * "a", 16 * "b"), strict=True):
+        (tmp_path / path).write_text('{"value": 1}', encoding="utf-8")
+        state_key(tmp_path / path, key)
+
+    def planned(command, env, **options):
+        Path(env[PLAN_VARIABLE]).write_text(json.dumps(made), encoding="utf-8")
+        rows = [f"{path}\tno update" for path in paths]
+        return subprocess.CompletedProcess(command, 0, "\n".join(["head", *rows]), "")
+
+    monkeypatch.setattr("squealpipe.study.explain.subprocess.run", planned)
+    assert [each.rule for each in explain(directory=tmp_path).jobs] == ["make_copied"]

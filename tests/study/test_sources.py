@@ -190,3 +190,14 @@ def test_a_law_counts_where_it_is_named(tmp_path):
     assert {"exponential", "hyperbolic"} <= {
         each.stem for each in used({}, [robustness, *closure(robustness)])
     }
+
+
+def test_what_a_module_reads_beside_its_imports_is_part_of_its_closure():
+    """An edit of the problems of the benchmark would run nothing again."""
+    read = named("benchmark/problems.yaml", "benchmark/references.json")
+    assert read <= set(closure(PACKAGE / "benchmark/problems.py"))
+
+
+def test_dimensions_of_a_sweep_in_another_order_are_another_result():
+    one, other = ({"vary": dict.fromkeys(names, 1.0)} for names in ("ab", "ba"))
+    assert rule_key(one, []) != rule_key(other, [])

@@ -18,6 +18,7 @@ from squealpipe.structures.schema.operating_map import Match
 from squealpipe.study.chunks import Chunks
 from squealpipe.study.report.operating import lines as words
 from squealpipe.study.sweep import joined, planned, run_sweep
+from squealpipe.text import percent
 
 STIFFNESS = 6e6
 UNITS = OperatingUnits("m s-1", np.nan)
@@ -48,6 +49,16 @@ def points():
         mu=[0.05, 0.6],
         workers=1,
     )
+
+
+def test_each_band_is_told_with_its_share_of_all_points(points):
+    noisy = points.frequency.values[np.isfinite(points.frequency.values)]
+    bands = np.rint(10.0 * np.log10(noisy / 1000.0))
+    told = [line for line in words(points) if "  band at " in line]
+    assert [line.split(": ")[1] for line in told] == [
+        f"{percent((bands == band).sum() / points.verdict.size)} of all points"
+        for band in np.unique(bands)
+    ]
 
 
 def test_growth_and_verdicts_are_those_of_own_eigenvalues(points):
