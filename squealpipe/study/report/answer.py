@@ -84,8 +84,9 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
     if verdict is Verdict.quiet:
         if not prefix and bool(answer.quiet_unless_struck):
             also = verdict_of(answer, "sudden_") is not Verdict.quiet
+            fate = "stay small" if _is_neutral(answer) else "die out"
             return (
-                f"{said} unless struck: small motions die out, but a hard enough blow"
+                f"{said} unless struck: small motions {fate}, but a hard enough blow"
                 f"{' or a sudden start' * also} leaves a vibration that lasts."
             )
         if _is_neutral(answer):
@@ -415,11 +416,12 @@ def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
     push = f"{cure.quiet_from} ({cure.change})"
     safe = f"{cure.any_start} ({cure.change_any_start})"
     if bool(answer.quiet_unless_struck):
-        told = f"a small push dies out up to {push}"
+        told = f"a small push {_fate_of_push(answer)} up to {push}"
         if cure.any_start not in ("none", NOT_RUN):
             told = f"{told}; quiet from any start at {safe}"
     elif cure.any_start == NOT_RUN:
-        told = f"{word} {push} a small push dies out; other starts were not run"
+        fate = _fate_of_push(answer)
+        told = f"{word} {push} a small push {fate}; other starts were not run"
     elif cure.any_start == cure.quiet_from:
         told = f"quiet {word} {push}"
     elif cure.any_start == "none":
@@ -432,7 +434,14 @@ def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
 def _more_intervals(name: str, answer: xr.Dataset) -> str:
     """Return the quiet intervals beyond the nearest one in words; none if there are none."""
     told = _intervals(answer.sel(cure=name))[1:]
-    return f"; a push also dies out at {' and '.join(told)}" if told else ""
+    if not told:
+        return ""
+    return f"; a push also {_fate_of_push(answer)} at {' and '.join(told)}"
+
+
+def _fate_of_push(answer: xr.Dataset) -> str:
+    """Return what a small push does where steady sliding is stable, as a verb."""
+    return "stays small" if _is_neutral(answer) else "dies out"
 
 
 def _intervals(cure: xr.Dataset) -> list[str]:

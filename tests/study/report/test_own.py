@@ -265,11 +265,23 @@ def test_a_cure_that_a_blow_undoes_is_told_after_the_one_that_is_safe(answers):
     (alpha2,) = (row for row in answer.of_a_push(told) if row.name == "alpha2")
     line = answer.cure_line(alpha2, told)
     assert line.endswith("quiet up to 56.5° (+6.5°); up to 50.6° unless struck")
-    told["quiet_unless_struck"] = True
+    told["quiet_unless_struck"], told["sliding_growth_rate"] = True, -1.0
     line = answer.cure_line(alpha2, told)
     assert line.endswith(
         "dies out up to 50.6° (+0.6°); quiet from any start at 56.5° (+6.5°)"
     )
+    assert "small motions die out, but" in answer.headline(told)
+
+
+def test_nothing_is_said_to_die_out_where_nothing_damps_it(answers):
+    told = answers["mine"].copy(deep=True)
+    told["verdict"], told["quiet_unless_struck"] = Verdict.quiet, True
+    told["sliding_growth_rate"] = 0.0
+    words = answer.of_a_push(told)
+    told_of = [answer.headline(told), *(answer.cure_line(each, told) for each in words)]
+    assert "small motions stay small, but" in told_of[0]
+    assert any("a small push stays small up to" in line for line in told_of)
+    assert not any("die" in line for line in told_of)
 
 
 def test_what_has_not_settled_has_no_time_by_which_it_had(answers):
