@@ -11,6 +11,7 @@ import pytest
 
 import squealpipe
 from squealpipe.systems import compiled
+from squealpipe.systems.taylor import lanes
 
 PACKAGE = Path(squealpipe.__file__).parent
 PROGRAM = """
@@ -71,6 +72,10 @@ def test_every_kernel_file_is_part_of_the_digest():
     using = {path.name for path in files if "\n@compiled\n" in path.read_text("utf-8")}
     assert len(using) > 2
     assert using <= {path.name for path in compiled.kernel_sources()}
+
+
+def test_an_edit_of_how_parts_are_compiled_compiles_the_loops_anew():
+    assert Path(compiled.__file__).read_bytes() in lanes._sources(None)
 
 
 def test_collection_of_garbage_waits_for_the_compiler_and_stays_off_where_it_was():

@@ -25,6 +25,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from squealpipe.systems import compiled
 from squealpipe.systems.compiled import views
 from squealpipe.systems.progress import report
 from squealpipe.systems.taylor import simd
@@ -211,7 +212,8 @@ def invoke(address: int, *words: int) -> None:
 def _sources(folder: Path | None) -> bytes:
     folders = [Path(__file__).parent, *([] if folder is None else [folder])]
     paths = [path for each in folders for path in sorted(each.glob("*.py"))]
-    return b"".join(path.read_bytes() for path in paths)
+    # how parts are compiled is said there
+    return b"".join(path.read_bytes() for path in (Path(compiled.__file__), *paths))
 
 
 def drive(
