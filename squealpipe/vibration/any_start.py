@@ -320,15 +320,20 @@ def lead(
             ways[row] = way
     left = 1.0 - Following.along
     while ways:
-        starts = []
+        owners: list[int] = []
+        starts: list[Start] = []
         for row, way in ways.items():
             cure = sides[row].cure
             subject = cure.apply(cure.value + (1.0 - left) * way)
-            starts += subjects.starts(subject, 0, sides[row].motions)
-        runs = iter(subjects.settle(starts))
+            # none where it has no steady sliding
+            made = subjects.starts(subject, 0, sides[row].motions)
+            starts += made
+            owners += [row] * len(made)
+        runs = list(zip(owners, subjects.settle(starts), strict=True))
         for row in list(ways):
-            settled = [next(runs) for _ in sides[row].motions]
-            lasting = [each.last.final for each in settled if each.lasts]
+            lasting = [
+                run.last.final for owner, run in runs if owner == row and run.lasts
+            ]
             quiet_from = nearest[sides[row].name]
             near = sides[row].scale(Following.located, quiet_from)
             sides[row].motions = lasting or sides[row].motions

@@ -1,9 +1,11 @@
 """Motions are followed to where they end, also far below the present value."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from squealpipe.vibration.any_start import any_start, sides_of
+from squealpipe.vibration.any_start import any_start, lead, sides_of
 from squealpipe.vibration.boundaries import Cure
 
 
@@ -54,3 +56,26 @@ def test_a_boundary_before_the_first_value_is_reached_from_any_start(lasting):
     )
     expected = min(1.05, 1.0 + lasting)
     assert found["contact_stiffness"] == pytest.approx(expected, rel=1e-2)
+
+
+def test_a_motion_is_not_led_to_where_there_is_no_steady_sliding():
+    """Friction may jam just before the quiet value: an assessment ended in StopIteration."""
+    motion = np.array([1.0])
+    cures = {
+        name: Cure(1.0, lambda value: value, np.array([0.5]), np.zeros(0))
+        for name in ("jams", "slides")
+    }
+    sides = sides_of(cures)
+    for side in sides:
+        side.motions = [motion]
+
+    class Subjects:
+        def starts(self, subject, number, motions):  # noqa: ARG002
+            return [] if subject < 0.7 else [subject]
+
+        def settle(self, starts):
+            last = SimpleNamespace(final=np.array([2.0]))
+            return [SimpleNamespace(lasts=True, last=last) for _ in starts]
+
+    lead(sides, {"jams": 0.6, "slides": 0.8}, Subjects())
+    assert [float(side.motions[0][0]) for side in sides] == [1.0, 2.0]
