@@ -224,7 +224,10 @@ class Way:
                 last = mu, pair
                 continue
             if last is None:
-                return Critical(np.nan, Onset.unstable_throughout)
+                # a mode that is new here, as beyond frictions that jam, has no earlier one
+                is_first = step is next(iter(self.steps.values()))
+                reason = Onset.unstable_throughout if is_first else Onset.not_followed
+                return Critical(np.nan, reason)
             located = self._onset(number, last, (mu, grown))
             if located is None:
                 return Critical(np.nan, Onset.not_followed)

@@ -25,7 +25,7 @@ from squealpipe.structures.refinement import (
     polished,
     unit_vector,
 )
-from squealpipe.structures.sliding import SlidingBalance
+from squealpipe.structures.sliding import NoSlidingError, SlidingBalance
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,8 @@ def onset(
         measure = _Growth(pencil_at, {low: before, high: after})
     try:
         mu = _zero(measure, low, high)
-    except RuntimeError:  # factors are singular: the mode has become another one
+    except (RuntimeError, NoSlidingError):
+        # factors are singular, the mode has become another one; or friction jams between both
         return None
     if mu is None:
         return None

@@ -90,3 +90,29 @@ def test_the_critical_friction_itself_may_be_among_those_asked_for(beside):
     modes = structure.complex_modes(mu=[0.0, critical, 1.0])
     assert (modes.onset == Onset.located).all()
     assert modes.critical_mu.values == pytest.approx(np.full(2, 5 / 6), abs=1e-11)
+
+
+# between both frictions the contacts can be neither open nor closed: an error, or said to be
+# unstable throughout
+@pytest.mark.parametrize(
+    ("stiffness", "normals", "tangentials", "springs", "preloads"),
+    [
+        ([[10, -3], [-3, 2]], [[-1, 2], [0, -1]], [[-1, -2], [2, 2]], [5, 3], [3, 3]),
+        ([[1, -1], [-1, 10]], [[1, -1], [-1, -2]], [[-2, 0], [2, 1]], [2, 4], [4, 1]),
+    ],
+)
+def test_a_mode_beyond_frictions_that_jam_is_not_followed_through_them(
+    stiffness, normals, tangentials, springs, preloads
+):
+    contacts = [
+        Contact(*each)
+        for each in zip("ab", normals, tangentials, springs, preloads, strict=True)
+    ]
+    structure = Structure(
+        np.eye(2), stiffness, modal_damping=0.01, contacts=contacts, mu=1.0
+    )
+    assert not structure.complex_modes(mu=[0.0]).unstable.any()
+    modes = structure.complex_modes()
+    assert modes.unstable.values.tolist() == [True, False, False]
+    assert modes.onset[0] == Onset.not_followed
+    assert np.isnan(modes.critical_mu).all()
