@@ -140,7 +140,14 @@ def finish(
 
     def finishing() -> None:
         if drawn is not None and isinstance(look, Look):
-            draw(dataset, drawn, look)
+            from squealpipe.store.whole_files import StoreError
+
+            try:
+                draw(dataset, drawn, look)
+            except StoreError as error:
+                # the same command alone would refuse to overwrite its dataset
+                again = f"{error}, with --force; or, as {current_session.remedy}"
+                raise StoreError(again) from error
         say(f"wrote {output}{f' and {drawn}' if drawn else ''}")
 
     if drawn is not None:

@@ -1,5 +1,6 @@
 """Files that commands write, and parameters that they take from a study."""
 
+import errno
 import fcntl
 import json
 import math
@@ -35,6 +36,7 @@ from squealpipe import (
 )
 from squealpipe.cli import reservation, run
 from squealpipe.plotting import picture
+from squealpipe.store.whole_files import not_written
 from squealpipe.study.configuration.settings import parse_study, read_study
 
 read = partial(pd.read_csv, comment="#", float_precision="round_trip")
@@ -400,6 +402,26 @@ def test_faults_inside_the_file_of_a_system_are_told_as_such(
     told = capsys.readouterr().err
     assert message in told
     assert "unexpected error" not in told
+
+
+def test_a_picture_that_finds_the_disk_full_is_drawn_as_the_message_says(
+    capsys, monkeypatch, tmp_path
+):
+    """To run the same command again, as it said, is refused: the dataset is there."""
+
+    def full(figure, paths, **look):  # noqa: ARG001
+        raise not_written(paths[0], OSError(errno.ENOSPC, "No space left on device"))
+
+    with chdir(tmp_path):
+        with monkeypatch.context() as patched:
+            patched.setattr("squealpipe.plotting.style.save_figure", full)
+            assert run(["simulate", "1", "2", "--t-end", "1"]) == 2
+        told = capsys.readouterr().err
+        assert "cannot write run.png: No space left" in told
+        assert "run the same command again, with --force" in told
+        remedy = re.search(r"squealpipe (plot .*) draws it", told)[1]
+        assert run(remedy.split()) == 0
+        assert Path("run.png").is_file()
 
 
 def test_a_study_in_a_folder_that_cannot_be_written_says_what_to_do(
