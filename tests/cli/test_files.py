@@ -409,7 +409,7 @@ def test_a_picture_that_finds_the_disk_full_is_drawn_as_the_message_says(
 ):
     """To run the same command again, as it said, is refused: the dataset is there."""
 
-    def full(figure, paths, **look):  # noqa: ARG001
+    def full(figure, paths, **look):
         raise not_written(paths[0], OSError(errno.ENOSPC, "No space left on device"))
 
     with chdir(tmp_path):

@@ -134,7 +134,13 @@ def _not_settled(answer: xr.Dataset, prefix: str) -> str:
             f"{engineering(float(answer.leading_frequency), 'Hz')}; give it more modal_damping, "
             "or a frequency_max below."
         )
-    told = f": after {engineering(value('settled_by'), 's')} the motion had not settled"
+    after = engineering(value("settled_by"), "s")
+    if not is_structure(answer) and value("separated_fraction") > 1.0 - 1e-9:
+        return (
+            f": the mass has left the belt, and had not come back after {after}; without contact "
+            "there is nothing to judge."
+        )
+    told = f": after {after} the motion had not settled"
     if not np.isnan(value("frequency")):
         at = engineering(value("frequency"), "Hz") + _wanders(answer, prefix)
         lost = percent(value("separated_fraction"))
