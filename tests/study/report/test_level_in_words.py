@@ -3,7 +3,7 @@
 import xarray as xr
 
 from squealpipe.codes import Verdict
-from squealpipe.study.report.answer import level
+from squealpipe.study.report.answer import headline, level
 
 
 def test_levels_along_and_across_the_belt_are_not_mistaken_for_each_other():
@@ -23,3 +23,23 @@ def test_levels_along_and_across_the_belt_are_not_mistaken_for_each_other():
         "Level: 0.25 m/s rms along the belt and 0.75 m/s across it (within 20 %); displacement up "
         "to 2 mm, contact force up to 30 N, 1.5 times the preload force."
     )
+
+
+def test_a_pad_that_rests_off_the_belt_is_not_said_to_be_still_moving():
+    answer = xr.Dataset(
+        {
+            "verdict": int(Verdict.undetermined),
+            "settled_by": 20.5,
+            "frequency": 1380.0,
+            "frequency_error": 0.0,
+            "peak_contact_force_over_preload": 0.0,
+            "separated_fraction": 1.0,
+        }
+    )
+    assert headline(answer) == (
+        "Undetermined: the mass has left the belt, and had not come back after 20.5 s; without "
+        "contact there is nothing to judge."
+    )
+    moving = headline(answer.assign(separated_fraction=0.95))
+    assert "had not settled" in moving
+    assert "contact lost 95 % of the time" in moving
