@@ -1,6 +1,7 @@
 """Shared fixtures: a copy of the checkout, and one run of the tiny study for all tests."""
 
 import contextlib
+import functools
 import gc
 import os
 import re
@@ -133,19 +134,35 @@ def pytest_collection_modifyitems(items):
     )
 
 
-@pytest.fixture
-def real_pictures():
-    """For tests that look at the picture which a command has written."""
-
-
-@pytest.fixture(autouse=True)
-def quick_pictures(request, monkeypatch):
+@pytest.fixture(autouse=True, scope="session")
+def quick_pictures():
     """Commands draw their pictures, but lay out and write them only where a test looks at them.
 
     That takes 0.2 s. Files of figures of every kind of dataset are written in tests/paper/figures.
     """
-    if "real_pictures" not in request.fixturenames:
-        monkeypatch.setattr("squealpipe.plotting.style.save_figure", _touch)
+    with pytest.MonkeyPatch.context() as patch:
+        from squealpipe.plotting import style
+
+        written = style.save_figure
+        patch.setattr(style, "save_figure", _touch)
+        yield written
+
+
+@pytest.fixture
+def real_pictures(quick_pictures, monkeypatch):
+    """For tests that look at the picture which a command has written."""
+    monkeypatch.setattr("squealpipe.plotting.style.save_figure", quick_pictures)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def options_read_once():
+    """Help of options that commands share is read from their source once, not by each command."""
+    with pytest.MonkeyPatch.context() as patch:
+        from cyclopts.argument import _collection
+
+        read = functools.cache(_collection.extract_docstring_help)
+        patch.setattr(_collection, "extract_docstring_help", read)
+        yield
 
 
 def _touch(_, paths, **__):

@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture(scope="module")
 def one_checkout(new_checkout, tmp_path_factory):
-    """One for all tests of a file: in each new one the engine is compiled anew."""
+    """One for all tests of a file: the first Snakemake in a new one makes its byte code."""
     return new_checkout(tmp_path_factory.mktemp("one") / "squealpipe")
 
 

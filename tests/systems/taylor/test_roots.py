@@ -1,15 +1,15 @@
 """The first root of a step's polynomial: known roots, grazing pairs, near misses."""
 
-import numba
 import numpy as np
 import pytest
 
+from squealpipe.systems.compiled import compiled
 from squealpipe.systems.taylor.roots import first_root, root_search
 
 ORDER, STEP = 15, 0.7
 
 
-@numba.njit(error_model="numpy")
+@compiled
 def _first(coefficients, step):
     return first_root(coefficients, 0, 0, step)[0]
 
