@@ -133,6 +133,9 @@ def _compiled(name: str, write: Write, n_arguments: int) -> tuple[str, bytes]:
     word = ir.IntType(64)
     kind = ir.FunctionType(ir.VoidType(), [word] * n_arguments)
     function = ir.Function(module, kind, name)
+    # rows that registers do not hold would lie across lines of the cache, or pages, else
+    function.attributes.alignstack = 64
+    function.attributes.add("nounwind")  # without another one llvmlite writes none
     builder: Any = ir.IRBuilder(function.append_basic_block())
     write(builder, function.args)
     builder.ret_void()
