@@ -218,8 +218,15 @@ class Numbering:
 
     def regime(self, contact: int, name: str) -> int:
         """Number of a contact's regime."""
-        own = list(self.belts[contact].regimes())
-        return int(self.first_regime[contact]) + own.index(name)
+        return int(self.first_regime[contact]) + self._places[contact][name]
+
+    @cached_property
+    def _places(self) -> list[dict[str, int]]:
+        """Regime → its number among those of each contact."""
+        return [
+            {name: place for place, name in enumerate(belt.regimes())}
+            for belt in self.belts
+        ]
 
     def _own_switches(self, contact: int) -> list[ContactSwitch]:
         name, belt = self.names[contact], self.belts[contact]
