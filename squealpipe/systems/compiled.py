@@ -48,6 +48,7 @@ _Dispatcher: Any = CPUDispatcher
 _Compiler: Any = CompilerBase
 _Passes: Any = PassManager
 _Function: Any = types.Function
+_widened: Any = types.unliteral
 
 
 class KernelCompiler(_Compiler):  # type: ignore[misc]
@@ -79,7 +80,12 @@ class KernelCompiler(_Compiler):  # type: ignore[misc]
 
 
 class _Inner(_Dispatcher):  # type: ignore[misc]
-    """A function that only compiled code calls."""
+    """A function that only compiled code calls; once for a number that is known and for others."""
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Return how it is called, as numba has it, with the types of constants widened."""
+        kws = {name: _widened(kind) for name, kind in kws.items()}
+        return super().get_call_template([_widened(kind) for kind in args], kws)
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ARG002 (numba's signature)
         """Raise, where numba would jump to an address that there is not and end the process."""

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 
 import squealpipe
@@ -64,6 +65,14 @@ def test_python_that_calls_a_part_of_compiled_code_is_told_how(decorator):
     with pytest.raises(TypeError, match=r"double has no wrapper for Python: call it "):
         kernel(1.0)
     assert kernel.py_func(1.0) == 2.0
+
+
+def test_a_part_is_compiled_once_for_constants_and_other_numbers():
+    """A constant had a type of its own, so functions were compiled up to five times."""
+    double = compiled.part(lambda number: 2 * number)
+    both = numba.njit(lambda number: double(3) + double(number=number))
+    assert both(4) == 14
+    assert len(double.signatures) == 1
 
 
 def test_every_kernel_file_is_part_of_the_digest():
