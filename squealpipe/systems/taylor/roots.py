@@ -103,6 +103,45 @@ def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> 
     return value, slope, 2.0 * bend
 
 
+@polynomial
+def _halved(
+    coefficients: Any, variable: int, lane: int, first: float, end: float, side: float
+) -> Any:
+    """Whether Newton's method leaves the bracket at a time and at three halfway on to its end.
+
+    Returns the last of these times as well, which is then the other end of the bracket.
+    """
+    order = coefficients.shape[1] - 1
+    second = 0.5 * (first + end)
+    third = 0.5 * (second + end)
+    last = 0.5 * (third + end)
+    p = q = r = s = coefficients[variable, order, lane]
+    dp = dq = dr = ds = 0.0
+    for k in range(order - 1, -1, -1):
+        lower = coefficients[variable, k, lane]
+        dp, p = dp * first + p, p * first + lower
+        dq, q = dq * second + q, q * second + lower
+        dr, r = dr * third + r, r * third + lower
+        ds, s = ds * last + s, s * last + lower
+    before = side if first < end else -side
+    passed = (
+        _leaves(first, p, dp, end, before)
+        & _leaves(second, q, dq, end, before)
+        & _leaves(third, r, dr, end, before)
+        & _leaves(last, s, ds, end, before)
+    )
+    return passed, last
+
+
+@part
+def _leaves(time: float, value: float, slope: float, end: float, side: float) -> bool:
+    """Whether Newton's method leads from a time on a side past an end, or away from it."""
+    following, middle = time - value / slope, 0.5 * (time + end)
+    outside = (following <= min(time, end)) | (following >= max(time, end))
+    goes_on = (abs(middle - time) > 2.0**-53 * abs(time)) & (middle != end)
+    return outside & goes_on & (value * side > 0.0)
+
+
 @part
 def largest_third(coefficients: Any, variable: int, lane: int, step: float) -> Any:
     """A bound of the third derivative over the step."""
@@ -256,10 +295,14 @@ def _bracketed(
 
     A step out of the bracket, which shrinks each time, is replaced by its middle. Of the slope
     instead of the polynomial if asked.
+
+    Where Newton's method comes to rest at an end of the bracket, one middle after the other
+    follows, nearer to that end: four of them are looked at in the time that one takes.
     """
     low, high = left, right
-    time = 0.5 * (low + high)
-    for _ in range(100):
+    time, looked, most = 0.5 * (low + high), 0, 100
+    while looked < most:
+        looked += 1
         value, slope, bend = evaluate_twice(coefficients, variable, lane, time)
         if of_slope:
             value, slope = slope, bend
@@ -271,7 +314,16 @@ def _bracketed(
             high = time
         following = time - value / slope
         if not low < following < high:
-            following = 0.5 * (low + high)
+            following, end = 0.5 * (low + high), time
+            while not of_slope and looked + 4 <= most:
+                passed, last = _halved(
+                    coefficients, variable, lane, following, end, side
+                )
+                if not passed:
+                    break
+                low, high = (end, last) if end == low else (last, end)
+                time, following = last, 0.5 * (low + high)
+                looked += 4
         if abs(following - time) <= 2.0**-53 * abs(time) or following in (low, high):
             return following
         time = following
