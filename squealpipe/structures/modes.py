@@ -7,7 +7,7 @@ from scipy.sparse.linalg import eigsh
 
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE, LowRank
-from squealpipe.structures.stiff import condensation, stiff_degrees
+from squealpipe.structures.stiff import beyond_gap, condensation, stiff_degrees
 
 
 def modes_at_rest(
@@ -39,10 +39,18 @@ def highest_frequency(structure: ContactStructure) -> float | None:
     """Return the highest frequency at rest without what a penalty fixes, Hz; None if large."""
     if structure.size > DENSE:
         return None
-    stiffness, mass = structure.stiffness_at_rest.toarray(), structure.mass.toarray()
     omega, _ = modes_at_rest(structure)
-    kept = structure.size - int(stiff_degrees(mass, stiffness).sum())
-    return float(omega[kept - 1] / (2 * np.pi))
+    return float(omega[free_degrees(structure) - 1] / (2 * np.pi))
+
+
+def free_degrees(structure: ContactStructure) -> int:
+    """Count the degrees of freedom that no penalty fixes; a run of the others would not end."""
+    mass, stiffness = structure.mass, structure.stiffness_at_rest
+    if structure.size > DENSE:
+        fixed = beyond_gap(mass.diagonal(), stiffness.diagonal())
+    else:
+        fixed = int(stiff_degrees(mass.toarray(), stiffness.toarray()).sum())
+    return structure.size - fixed
 
 
 def audible_band(structure: ContactStructure) -> float | None:

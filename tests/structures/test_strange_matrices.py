@@ -1,5 +1,7 @@
 """Strange everyday matrices: penalties, rigid links, no mass, other units, double roots."""
 
+from dataclasses import replace
+
 import mpmath
 import numpy as np
 import pytest
@@ -7,7 +9,13 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from squealpipe import Contact, Structure
+from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome
+from squealpipe.structures import elastic_pad
+from squealpipe.structures.assess.assess import judge_structure
+from squealpipe.structures.assess.designs import Design
+from squealpipe.structures.squeal import refined_levels
+from squealpipe.structures.squeal.plant import Plant
 
 SMALL = np.array([[1e5, -3e4], [-3e4, 8e4]])
 CONTACT = Contact("p", {1: 1.0}, {0: 1.0}, 1e5, 100.0)
@@ -43,6 +51,57 @@ def test_a_penalty_fixes_a_degree_of_freedom_and_changes_nothing_else(penalty, d
     fixed = modes.attrs["fixed_degrees_of_freedom"]
     assert modes.sizes["mode"] == 3 - fixed
     assert fixed == (penalty >= 1e16)
+
+
+def test_what_a_penalty_fixes_is_not_run():
+    """A run in the mode of the penalty did not end, or ended in a division by zero."""
+    plant = Plant(with_fixed(1e20, modal_damping=3e-3))
+    alone = Plant(Structure(np.eye(2), SMALL, contacts=[CONTACT], modal_damping=3e-3))
+    assert plant.size == 2
+    assert plant.obstacle is None
+    assert plant.structure.modes.shape == (3, 2)
+    assert plant.structure.stiffness_at_rest.diagonal() == pytest.approx(
+        la.eigvalsh(alone.structure.stiffness_at_rest.toarray())
+    )
+
+
+def test_what_penalties_fix_of_a_larger_structure_is_in_none_of_its_coordinates():
+    """A level in more modes was to be that in all, those of the penalties among them."""
+    pad, fixed = elastic_pad(elements=(8, 2), modal_damping=0.01), 10
+    none = np.zeros(fixed)
+    contacts = [
+        replace(
+            contact,
+            normal=np.concatenate([contact.direction("normal", pad.size), none]),
+            tangential=np.concatenate(
+                [contact.direction("tangential", pad.size), none]
+            ),
+        )
+        for contact in pad.contacts
+    ]
+    mass, stiffness = (
+        sp.block_diag([matrix, value * sp.eye_array(fixed)])
+        for matrix, value in ((pad.mass, 1e-3), (pad.stiffness, 1e20))
+    )
+    structure = Structure(mass, stiffness, contacts=contacts, modal_damping=0.01)
+    design = Design.of(structure)
+    assert design.whole.size <= pad.size
+    refined = refined_levels.more_modes(design.reduction)
+    assert refined.size == pad.size
+
+
+def test_a_penalty_changes_neither_verdict_nor_level():
+    given = {"contacts": [CONTACT], "mu": 1.0, "modal_damping": 3e-3}
+    alone, held = (
+        judge_structure(structure, samples=0, seed=0, tol=1e-12).without_cures()
+        for structure in (
+            Structure(np.eye(2), SMALL, **given),
+            Structure(np.eye(3), la.block_diag(SMALL, 1e20), **given),
+        )
+    )
+    assert int(alone.verdict) != Verdict.quiet
+    for name in ("verdict", "frequency", "separated_fraction", "n_modes"):
+        assert float(held[name]) == pytest.approx(float(alone[name]), rel=1e-6), name
 
 
 def test_the_issues_fixed_degree_of_freedom_has_the_numbers_of_the_closed_form():

@@ -12,6 +12,7 @@ import numpy as np
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.modes import free_degrees
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant, damped_beyond
 from squealpipe.structures.squeal.settling import so_far
@@ -74,7 +75,7 @@ class Design:
         if running.reduced_from is None:
             return cls(running, obstacle=plant.obstacle)
         origin = running.reduced_from.whole
-        number = min(2 * running.size, origin.size)
+        number = min(2 * running.size, free_degrees(origin))
         coordinates = subspace(origin, [], number)
         return cls(
             _projected(origin, coordinates),

@@ -13,6 +13,7 @@ from squealpipe.benchmark.schema import Reliability, Role
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.modes import free_degrees
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import reduce
 from squealpipe.structures.schema.squeal_ladder import (
@@ -130,14 +131,14 @@ def squeal_ladder(
 
 
 def _sizes(structure: ContactStructure, n_modes: Sequence[int]) -> list[int]:
-    fewest = max(len(structure.contacts), 2)
-    sizes = distinct(n_modes, fewest, min(structure.size, SquealLimits.most_modes))
-    if structure.size <= SquealLimits.most_modes:
-        sizes = distinct([*sizes, structure.size], 1, structure.size)
+    fewest, free = max(len(structure.contacts), 2), free_degrees(structure)
+    sizes = distinct(n_modes, fewest, min(free, SquealLimits.most_modes))
+    if free <= SquealLimits.most_modes:
+        sizes = distinct([*sizes, free], 1, free)
     if not sizes:
         raise ValueError(
             f"n_modes = {tuple(n_modes)!r}: from {fewest}, as many as the contacts and two at "
-            f"least, to {min(structure.size, SquealLimits.most_modes)} are needed"
+            f"least, to {min(free, SquealLimits.most_modes)} are needed"
         )
     return sizes
 

@@ -14,11 +14,12 @@ from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.structures.agreement import Agreement, Truth, exact
 from squealpipe.structures.complex_modes import complex_modes
 from squealpipe.structures.definition import ContactStructure, ReducedFrom
-from squealpipe.structures.modes import audible_band, modes_at_rest
+from squealpipe.structures.modes import audible_band, free_degrees, modes_at_rest
 from squealpipe.structures.motion_system import system
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import (
     agreement_of,
+    fewest_modes,
     fitted,
     modes_that_would_do,
     reduce,
@@ -43,14 +44,17 @@ def carried(
         frequency_max: unstable modes up to there count, Hz; None: as it was reduced, or all.
 
     Returns:
-        The structure itself where it is small, or where it has too many contacts to be run.
+        The structure itself where it is small and no penalty fixes a part of it, or where it has
+        too many contacts to be run.
     """
     if not structure.contacts:
         raise ValueError("the structure has no contacts: nothing rubs")
     if structure.size <= SquealLimits.most_modes:
-        if frequency_max is None:
+        free = free_degrees(structure)
+        if frequency_max is None and free == structure.size:
             return structure
-        return reduce(structure, n_modes=structure.size, frequency_max=frequency_max)
+        number = max(free, fewest_modes(structure))
+        return reduce(structure, n_modes=number, frequency_max=frequency_max)
     if structure.reduced_from is not None and structure.size <= Caps().modes:
         return structure  # reduced by hand
     origin = structure.reduced_from or ReducedFrom(structure, frequency_max)

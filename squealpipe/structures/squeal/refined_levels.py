@@ -16,6 +16,7 @@ import numpy as np
 from squealpipe.codes import Verdict
 from squealpipe.structures.agreement import Truth
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.modes import free_degrees
 from squealpipe.structures.reduction import Search
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.settling import settings_of, settle
@@ -77,7 +78,7 @@ def refined_levels(
     lasting = [index for index, run in enumerate(motions) if not run.quiet]
     refined = None
     if lasting and modes is not None and not stop_is_asked():
-        refined = _refined(reduction)
+        refined = more_modes(reduction)
     if refined is None or modes is None:
         return RefinedLevels(0, speeds, verdicts)
     lift = _lift(modes, refined.structure)
@@ -97,14 +98,14 @@ def refined_levels(
     return RefinedLevels(refined.size, speeds, verdicts)
 
 
-def _refined(reduction: ContactStructure) -> Plant | None:
+def more_modes(reduction: ContactStructure) -> Plant | None:
     """Return the structure in more coordinates; None if it has no more, or they cannot be run."""
     origin = reduction.reduced_from
     if origin is None:
         return None
     whole = origin.whole
     number = max(Refinement.factor * reduction.size, Refinement.fewest)
-    number = min(number, whole.size, Caps().modes)
+    number = min(number, free_degrees(whole), Caps().modes)
     if number <= reduction.size:
         return None
     truth = origin.truth or Truth.of(whole, origin.frequency_max)
