@@ -8,10 +8,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.brake.a1.ensemble import run_ensemble
-from squealpipe.brake.a4.exact_branches import exact_branch
+from squealpipe.brake.a4.exact_branches import places_on_exact_branch
 from squealpipe.brake.a4.system import ScaledSystem, scaled_system
 from squealpipe.brake.backbones.backbone import exact_variables
 from squealpipe.brake.models.refusals import extensions
+from squealpipe.brake.orbits.tracing import found_at
 from squealpipe.brake.schema.dynamics.explorer import HISTORIES, ORBITS, explorer_schema
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
@@ -159,15 +160,13 @@ def _branch(
 ) -> None:
     # peaks and amplitudes over l_pre up to which branches go
     largest = 3.0
-    orbits, outcomes, end = exact_branch(scene, mode, largest, largest)
+    places, end = places_on_exact_branch(scene, mode, largest, largest)
     wanted = arrays["omega"].shape[-1]
-    points = len(orbits)
-    if points:
-        chosen = np.round(np.linspace(0, points - 1, min(points, wanted))).astype(int)
-        chosen = np.concatenate([chosen, np.full(wanted - chosen.size, points - 1)])
-        variables = exact_variables(
-            scene, params, [orbits[i] for i in chosen], outcomes, end
-        )
+    even = np.linspace(0, len(places) - 1, min(len(places), wanted))
+    orbits = found_at(places[i] for i in np.round(even).astype(int))
+    if orbits:
+        orbits += orbits[-1:] * (wanted - len(orbits))
+        variables = exact_variables(scene, params, orbits, [], end)
     for name in ORBITS:
-        arrays[name][place] = variables[name] if points else np.nan
+        arrays[name][place] = variables[name] if orbits else np.nan
     arrays["end"][place] = int(end)

@@ -197,12 +197,11 @@ class PseudoArclength:
         accepts: Callable[[ContinuationState], bool] = lambda _: True,
     ) -> ContinuationState | None:
         """The next state that is accepted; None where no step down to the shortest one is."""
-        step = state.step
-        while step >= self.settings.shortest_step:
-            following = self.attempt(problem, replace(state, step=step))
+        while state.step >= self.settings.shortest_step:
+            following = self.attempt(problem, state)
             if following is not None and accepts(following):
                 return following
-            step *= 0.5
+            state = replace(state, step=0.5 * state.step)
         return None
 
 

@@ -1,13 +1,15 @@
 """Branches of exact periodic motions of model A4, in scaled units."""
 
 import math
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from squealpipe.brake.a4.orbits import check_peak, grazing_start, linear_orbit
 from squealpipe.brake.a4.system import ScaledSystem
 from squealpipe.brake.orbits.orbits import Orbit, decoupled_half_period, solve_orbit
-from squealpipe.brake.orbits.tracing import trace_branch
+from squealpipe.brake.orbits.tracing import Place, places_on_branch, trace_branch
 from squealpipe.schema import Outcome
 
 POINT_SPACING = 0.02
@@ -34,17 +36,34 @@ def exact_branch(
         found = [solve_orbit(scene.system, guess) for guess in guesses]
         beyond = [orbit for orbit in found if orbit is not None]
     else:
-        seed = grazing_start(scene, mode)
-        beyond, why = trace_branch(
-            scene.system,
-            seed.point,
-            seed.direction,
-            y_max,
-            seed.settings(),
-            POINT_SPACING,
-        )
+        beyond, why = trace_branch(*_trace_of(scene, mode, y_max))
         end = Outcome[why.name]
     return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
+
+
+def places_on_exact_branch(
+    scene: ScaledSystem, mode: int, y_max: float, x_max: float
+) -> tuple[list[Place], Outcome]:
+    """What :func:`exact_branch` finds, but orbits as functions, for those that are wanted."""
+    orbits, _, end = linear_part(scene, mode, y_max, x_max)
+    beyond = list[Place]()
+    if end is None and scene.system.decoupled:
+        orbits, _, end = exact_branch(scene, mode, y_max, x_max)
+    elif end is None:
+        beyond, why = places_on_branch(*_trace_of(scene, mode, y_max))
+        end = Outcome[why.name]
+    return [*(partial(_known, orbit) for orbit in orbits), *beyond], end
+
+
+def _known(orbit: Orbit) -> Orbit:
+    return orbit
+
+
+def _trace_of(scene: ScaledSystem, mode: int, y_max: float) -> tuple[Any, ...]:
+    """The arguments with which a branch is traced from grazing on."""
+    seed = grazing_start(scene, mode)
+    way = seed.point, seed.direction, y_max, seed.settings()
+    return scene.system, *way, POINT_SPACING
 
 
 def linear_part(

@@ -6,7 +6,7 @@ across a bifurcation, perfect or not, and is taken again at half its length.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import partial
@@ -34,6 +34,8 @@ from squealpipe.systems.continuation import (
 from squealpipe.systems.progress import report
 
 Vector = NDArray[np.float64]
+Place = Callable[[], Orbit | None]
+"""From a place on a branch to the orbit there; None where Newton's method fails."""
 
 
 @dataclass(frozen=True)
@@ -107,12 +109,34 @@ def trace_branch(
         y_stop: larger y of the instants of rest at which the trace ends.
         spacing: of the orbits over 1 + |z|; 0 for the last one alone.
     """
-    trace, orbits = _Trace(system, settings, y_stop), []
+    trace, orbits = _Trace(system, settings, y_stop), list[Orbit]()
     for line, share in trace.steps(start, direction):
-        found = trace.orbits(line, share, spacing)
-        orbits += [orbit.from_higher_rest() for orbit in found]
+        orbits += found_at(trace.places(line, share, spacing))
         report(partial(_gone, orbits, y_stop))
     return orbits, trace.end
+
+
+def places_on_branch(
+    system: PiecewiseLinearSystem,
+    start: Vector,
+    direction: Vector,
+    y_stop: float,
+    settings: TraceSettings,
+    spacing: float,
+) -> tuple[list[Place], TraceEnd]:
+    """What :func:`trace_branch` returns, but orbits as functions, for those that are wanted."""
+    trace, places = _Trace(system, settings, y_stop), list[Place]()
+    for line, share in trace.steps(start, direction):
+        places += trace.places(line, share, spacing)
+    if trace.end is TraceEnd.amplitude_reached:
+        peak = places[-1]()  # whether it is found decides why the trace ends
+        places[-1] = lambda: peak
+    return places, trace.end
+
+
+def found_at(places: Iterable[Place]) -> list[Orbit]:
+    """Orbits at places of a branch, without those that Newton's method does not find."""
+    return [orbit for place in places if (orbit := place())]
 
 
 def _gone(orbits: list[Orbit], y_stop: float) -> float:
@@ -264,29 +288,33 @@ class _Trace:
         share = line.root(self._room, top)
         return top if share is None else share
 
-    def orbits(
-        self, line: Line[Orbit], share: float, spacing: float
-    ) -> Iterator[Orbit]:
+    def places(self, line: Line[Orbit], share: float, spacing: float) -> list[Place]:
         """Orbits of a step at even distances up to a share of it, and the one at the peak."""
-        reached = self.end is TraceEnd.amplitude_reached
+        reached, places = self.end is TraceEnd.amplitude_reached, list[Place]()
         if spacing:
             unit = spacing * (1.0 + length_of(line.known[0.0][0].point))
             pieces = max(1, math.ceil(share * line.reach / unit))
-            for piece in range(1, pieces + 1 - reached):
-                try:
-                    orbit = line.at(share * piece / pieces)[1]
-                except ArithmeticError:
-                    continue
-                if piece == pieces:
-                    orbit = orbit_across(self.system, orbit.point, line.normal) or orbit
-                yield orbit
-        if not reached:
-            return
+            places += [
+                partial(self._orbit, line, share * piece / pieces, piece == pieces)
+                for piece in range(1, pieces + 1 - reached)
+            ]
+        return [*places, partial(self._peak, line, share)] if reached else places
+
+    def _orbit(self, line: Line[Orbit], share: float, is_last: bool) -> Orbit | None:
+        try:
+            orbit = line.at(share)[1]
+        except ArithmeticError:
+            return None
+        if is_last:
+            orbit = orbit_across(self.system, orbit.point, line.normal) or orbit
+        return orbit.from_higher_rest()
+
+    def _peak(self, line: Line[Orbit], share: float) -> Orbit | None:
         there = line.at(share)[1].from_higher_rest()
         x0, _, half_period = there.point
         found = solve_orbit(self.system, np.array([x0, self.y_stop, half_period]))
         size = 1.0 + length_of(there.point)
         if found and np.abs(found.point - there.point).sum() < limits.near * size:
-            yield found
-        else:
-            self.end = TraceEnd.branch_lost
+            return found.from_higher_rest()
+        self.end = TraceEnd.branch_lost
+        return None
