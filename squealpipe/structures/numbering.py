@@ -9,6 +9,7 @@ more for each onset.
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -36,8 +37,11 @@ class Step:
 
     def place(self, number: int) -> int | None:
         """Return the index of the mode with a number, or None if it is not among these."""
-        places = np.flatnonzero(self.numbers == number)
-        return int(places[0]) if places.size else None
+        return self._places.get(number)
+
+    @cached_property
+    def _places(self) -> dict[int, int]:
+        return {number: place for place, number in enumerate(self.numbers.tolist())}
 
     def pair(self, number: int) -> Eigenpair | None:
         """The mode of a number."""

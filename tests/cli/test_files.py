@@ -68,6 +68,7 @@ def test_one_of_two_commands_that_write_to_one_name_is_refused_before_it_compute
             while not (tmp_path / ".a.nc.writing").exists():
                 time.sleep(0.1)
             time.sleep(0.1)
+            other.send_signal(signal.SIGSTOP)  # it holds the name all the same
             assert run(words) == 2
             told = capsys.readouterr().err
             assert "a.nc is being written by another command" in told

@@ -7,7 +7,8 @@ lane's parameters, which the constants of its regimes follow, ``out`` of the res
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from types import CodeType
 from typing import Any
 
 import numpy as np
@@ -269,11 +270,17 @@ def python_function(
         f" {x}\n" for x in lines
     )
     scope: dict[str, Any] = {"math": module, "only": _only}
-    exec(source, scope)  # noqa: S102
+    exec(_code(source), scope)  # noqa: S102
     if "only(" not in source:
         return scope["function"]
     # fields of other regimes need not be numbers
     return np.errstate(invalid="ignore", divide="ignore")(scope["function"])
+
+
+@lru_cache(4096)
+def _code(source: str) -> CodeType:
+    """Return the code of a text: in a process systems of the same laws are traced many times."""
+    return compile(source, "<string>", "exec")
 
 
 def _only(mark: Any, value: Any) -> Any:
