@@ -24,6 +24,7 @@ from squealpipe.brake.assess.settling import pushed, settle, start_at, strikes
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.snap_through import SnapThrough
 from squealpipe.brake.linear.maps import stability_map
+from squealpipe.brake.models.refusals import refuse_scales
 from squealpipe.brake.schema.assess import CURES
 from squealpipe.codes import Verdict
 from squealpipe.parameters import Parameters
@@ -106,6 +107,7 @@ def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Ju
         alpha1, alpha2: spring angles, rad.
         tol: tolerance of the runs.
     """
+    refuse_scales(params)
     design = Design(params, alpha1, alpha2)
     sliding = Sliding.of(design)
     sudden = start_at(design, sliding, np.zeros(4))

@@ -580,3 +580,10 @@ def test_an_undamped_pad_is_pushed_along_its_slowest_mode():
     squares, shapes = np.linalg.eig(sliding.jacobian[2:, :2])  # −ω²
     slowest = shapes[:, squares.real.argmax()]
     assert abs(slowest @ sliding.push[:2]) == pytest.approx(1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("extreme", ["mass", "damping1", "preload"])
+def test_numbers_beyond_those_of_a_double_are_refused_by_name(extreme):
+    """1e308 ended in a division by zero, in a matrix with NaNs, or blamed the start."""
+    with pytest.raises(ValueError, match=r"with mass = .*use other units"):
+        assess(PAD.with_(**{extreme: 1e308}), *SQUEAL)
