@@ -76,29 +76,17 @@ def natural_frequencies_squared(invariants: StiffnessSpectrum) -> tuple[Any, Any
     return invariants.determinant / larger, larger
 
 
-class FirstIntegral(NamedTuple):
-    """H = ½ m v'S v + ½ u'S K u + ½ g N²/k3, conserved by A4 in both states."""
-
-    s11: Any
-    s12: Any
-    s22: Any
-    g: Any
-
-
-def first_integral(stiffness: Stiffness, mu: Any) -> FirstIntegral:
-    """Coefficients of the conserved quantity; identically zero if K12 = 0 and K11 = K22."""
-    k11, k12, k22 = stiffness
-    return FirstIntegral(
-        k12, -mu * k12, k12 + mu * (k11 - k22), k12 * (1.0 - mu * mu) + mu * (k11 - k22)
-    )
-
-
 def first_integral_value(
     x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: Stiffness
 ) -> Any:
-    """H at a state, N J/m."""
-    s11, s12, s22, g = first_integral(stiffness, p.drag)
+    """H = ½ m v'S v + ½ u'S K u + ½ g N²/k3, N J/m, conserved by A4 in both states.
+
+    Identically zero if K12 = 0 and K11 = K22.
+    """
     k11, k12, k22 = stiffness
+    mu = p.drag
+    s11, s12, s22 = k12, -mu * k12, k12 + mu * (k11 - k22)
+    g = k12 * (1.0 - mu * mu) + mu * (k11 - k22)
     sk11, sk12 = s11 * k11 + s12 * k12, s11 * k12 + s12 * k22
     sk21, sk22 = s12 * k11 + s22 * k12, s12 * k12 + s22 * k22
     kinetic = 0.5 * p.mass * (s11 * vx * vx + 2.0 * s12 * vx * vy + s22 * vy * vy)
