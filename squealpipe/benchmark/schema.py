@@ -91,7 +91,6 @@ failure_atlas_schema = DatasetSchema(
 _adaptive_step_round_off = RoundOff(
     ComparedAs.magnitude, "errors of adaptive steps follow round-off", floor=1e-9
 )
-_COUNT = "; -1 where no events are reported or judged"
 
 benchmark_schema = DatasetSchema(
     name="benchmark",

@@ -13,11 +13,8 @@ import xarray as xr
 
 from squealpipe.systems.datasets import ABSENT as ABSENT
 from squealpipe.systems.datasets import ANGLE_CONVENTION as ANGLE_CONVENTION
-from squealpipe.systems.datasets import LICENCE as LICENCE
 from squealpipe.systems.datasets import LINEAR_ENDS as LINEAR_ENDS
 from squealpipe.systems.datasets import ORBIT_ENDS as ORBIT_ENDS
-from squealpipe.systems.datasets import OWN_NAMES as OWN_NAMES
-from squealpipe.systems.datasets import REFERENCES as REFERENCES
 from squealpipe.systems.datasets import RUN_ENDS as RUN_ENDS
 from squealpipe.systems.datasets import SYSTEM as SYSTEM
 from squealpipe.systems.datasets import DatasetSchema as DatasetSchema
@@ -27,10 +24,8 @@ from squealpipe.systems.datasets import Variable as Variable
 from squealpipe.systems.datasets import blank as blank
 from squealpipe.systems.datasets import build as build
 from squealpipe.systems.datasets import count as count
-from squealpipe.systems.datasets import faults_of_values as faults_of_values
 from squealpipe.systems.datasets import flag as flag
 from squealpipe.systems.datasets import flag_table as flag_table
-from squealpipe.systems.datasets import in_words as in_words
 from squealpipe.systems.datasets import labels as labels
 from squealpipe.systems.datasets import meanings as meanings
 from squealpipe.systems.datasets import or_nan as or_nan
