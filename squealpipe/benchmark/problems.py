@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from copy import deepcopy
 from functools import cache
 from importlib.resources import files
+from types import CodeType
 from typing import Any, NamedTuple
 
 import yaml
@@ -108,7 +109,7 @@ class Problem:
         ]
         source = "\n ".join(["def made(time, y):", *lines, f"return {body}"])
         scope = {**self._names, **constants}
-        exec(source, scope)  # noqa: S102 (equations of this package)
+        exec(_code(source), scope)  # noqa: S102 (equations of this package)
         return scope["made"]
 
     def per_regime(self, texts: Any) -> dict[str, Callable[[Any, Any], Any]]:
@@ -148,6 +149,11 @@ class Problem:
     def watched(self, regime: str) -> list[Transition]:
         """The switches that can fire in a regime."""
         return [switch for switch in self.switches if regime in switch.leaves]
+
+
+@cache
+def _code(source: str) -> CodeType:
+    return compile(source, "<equations>", "exec")
 
 
 @cache

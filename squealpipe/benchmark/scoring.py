@@ -198,6 +198,7 @@ def measure(data: Mapping[str, Any], solve: Callable[..., Any], tol: float) -> S
     Calls of the field are counted here; a solver that makes its own functions tells their number.
     """
     problem = Problem(deepcopy(dict(data)))
+    stated = _stated(problem)
     started = time.process_time()
     try:
         answer = solve(problem, tol)
@@ -210,9 +211,10 @@ def measure(data: Mapping[str, Any], solve: Callable[..., Any], tol: float) -> S
     except (Exception, SystemExit) as failure:  # noqa: BLE001 (whatever a solver raises)
         spent = time.process_time() - started
         scored = failed(data, f"{type(failure).__name__}: {failure}", problem.calls)
-    if altered := _altered(problem, data):
+    if altered := [n for n, text in _stated(problem).items() if text != stated[n]]:
         remarks = [scored.message] * bool(scored.message)
-        scored = scored._replace(message="; ".join([*remarks, f"altered {altered}"]))
+        remarks.append(f"altered {', '.join(altered)}")
+        scored = scored._replace(message="; ".join(remarks))
     return scored._replace(cpu_time=spent, message=scored.message[:64])
 
 
@@ -223,9 +225,8 @@ def failed(data: Mapping[str, Any], flag: str, calls: int = 0) -> Score:
     return scored._replace(message=flag[:64])
 
 
-def _altered(problem: Problem, data: Mapping[str, Any]) -> str:
-    """Names of what a solver has changed in the copy of the problem that it was given."""
-    fresh = Problem(data)
+def _stated(problem: Problem) -> dict[str, str]:
+    """What a solver may not change in the copy of the problem that it is given, as texts."""
     names = [
         "start",
         "parameters",
@@ -236,8 +237,7 @@ def _altered(problem: Problem, data: Mapping[str, Any]) -> str:
         "data",
         "patience",
     ]
-    changed = [n for n in names if repr(getattr(problem, n)) != repr(getattr(fresh, n))]
-    return ", ".join(changed)
+    return {name: repr(getattr(problem, name)) for name in names}
 
 
 def benchmark(
