@@ -258,6 +258,7 @@ def run_ensemble(
     tangent: bool = False,
     log_events: Seed = 0,
     size: Positive = 1.0,
+    turns: bool = True,
     workers: Workers = None,
     **options: Any,
 ) -> Ensemble:
@@ -273,6 +274,7 @@ def run_ensemble(
         log_events: number of events a run to keep; knots of a law's table are none of A1.
         size: of the motion, over l_pre; ``tol`` is relative to it. Steps grow by its 14th root at a
             tolerance of 1e-9, by its 10th root at 1e-6.
+        turns: count those around the fixed ends, which may also end a run.
         workers: processes; None takes all cores. The results are the same bit for bit.
     """
     jobs = jobs_of(parameters, alpha1, alpha2, **options)
@@ -284,6 +286,7 @@ def run_ensemble(
         tangent=tangent,
         log_events=log_events,
         size=size,
+        turns=turns,
         workers=workers,
     )
 
@@ -314,6 +317,7 @@ def _run(
     tracked: Sequence[str],
     workers: int | None = None,
     size: float = 1.0,
+    turns: bool = True,
     **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results of the runs of one system, one row each."""
@@ -345,7 +349,7 @@ def _run(
             t_late=t_late,
             late_from="contact" if jobs.late_from_return else None,
             until=until,
-            around=points,
+            around=points if turns else None,
             most_turns=jobs.stop_at_turns,
             tracked=tracked,
             times=jobs.times[rows],

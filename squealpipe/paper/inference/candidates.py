@@ -122,6 +122,7 @@ class Candidates:
             model=self.model + variant,
             tol=self.tol,
             workers=self.workers,
+            turns=False,
             **options,
         )
 

@@ -190,17 +190,19 @@ def first_root(
     start: float = 0.0,
     known: float = 0.0,
     floor: float = 0.0,
+    third: float = 0.0,
 ) -> Any:
     """The first t in (start, step] where the polynomial changes its sign or touches zero.
 
     A root at the start itself is where the state comes from; it does not count. ``known`` is the
-    sign just after it where round-off hides it; ``floor`` is :func:`hidden_below`, if it is known.
+    sign just after it where round-off hides it; ``floor`` is :func:`hidden_below` and ``third``
+    :func:`largest_third`, if they are known.
 
     Returns:
         The root, ``no_root`` where there is none or ``undecided`` where nothing can be said, and
         the time up to which the search is complete: a step may end where its sign is hidden.
     """
-    third = largest_third(coefficients, variable, lane, step)
+    third = third or largest_third(coefficients, variable, lane, step)
     if floor == 0.0:
         floor = hidden_below(coefficients, variable, lane, step)
     left, right, band, band_side = start, step, start, 0.0
@@ -332,14 +334,14 @@ def _bracketed(
 
 @part
 def first_crossing(
-    coefficients: Any, variable: int, lane: int, step: float, watch: Watch
+    coefficients: Any, variable: int, lane: int, step: float, watch: Watch, third: float
 ) -> Any:
     """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
 
     Returns it and the time up to which the search is complete, as :func:`first_root`. One that
     starts from zero (``fresh``) has the side that it first takes by more than its noise, which
     grows by ``drift`` with time; a side that is the wrong one is a crossing ``at_once``, at 0,
-    unless the switch changes nothing.
+    unless the switch changes nothing. ``third`` is :func:`largest_third`; 0: it is not known.
     """
     falls, rises, fresh, at_once, noise, drift = watch
     start, side = 0.0, coefficients[variable, 0, lane]
@@ -359,7 +361,7 @@ def first_crossing(
             return 0.0, step
     while side != 0.0:
         root, looked = first_root(
-            coefficients, variable, lane, step, start, side, floor
+            coefficients, variable, lane, step, start, side, floor, third
         )
         if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
             return root, looked

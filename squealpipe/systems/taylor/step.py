@@ -332,7 +332,9 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
                 m.noise[surface, 1, lane],
             )
             index = t.n_variables + surface
-            root, looked = first_crossing(c, index, lane, step, watch)
+            whole = step == m.rows[layout.numbers.step, lane]
+            third = m.scratch[3, surface] if whole else 0.0
+            root, looked = first_crossing(c, index, lane, step, watch, third)
             unclear |= root == root_search.undecided
             complete = min(complete, looked)
         if root < 0.0 or root > first + tie:
@@ -389,7 +391,10 @@ def _is_hidden(
 
 @part
 def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
-    """Whether a lane's step is, and the surfaces to be searched, which might be so for ever."""
+    """Whether a lane's step is, and the surfaces to be searched, which might be so for ever.
+
+    Puts bounds of their third derivatives into the scratch, which the search needs as well.
+    """
     total = m.rows[layout.numbers.step, lane]
     for variable in range(t.n_variables):
         total += 0.0 * m.rows[layout.numbers.first_of_system + variable, lane]
@@ -398,6 +403,7 @@ def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
             third = largest_third(
                 c, t.n_variables + surface, lane, m.rows[layout.numbers.step, lane]
             )
+            m.scratch[3, surface] = third
             total += 0.0 * third
     return math.isfinite(total)
 
