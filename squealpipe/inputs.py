@@ -14,9 +14,7 @@ from squealpipe.parameters import (
     KEYS_THAT_TAKE,
     UNITS_OF_INPUTS,
 )
-from squealpipe.systems.inputs.values import brief
-from squealpipe.text import as_number
-from squealpipe.units import (
+from squealpipe.systems.inputs.units import (
     UnitError,
     has_unit,
     holds_units,
@@ -24,6 +22,8 @@ from squealpipe.units import (
     is_quantity,
     number_of,
 )
+from squealpipe.systems.inputs.values import brief
+from squealpipe.systems.inputs.words import as_number
 
 ANGLES = ("alpha1", "alpha2")
 UNITS = UNITS_OF_INPUTS | {

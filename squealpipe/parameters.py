@@ -12,9 +12,9 @@ from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient, static_coe
 from squealpipe.laws.tables import is_table, knots_of, named
 from squealpipe.laws.tables import stood_for as stood_for_by_law
 from squealpipe.substitutes import SUBSTITUTES, check_together, stands_for, stood_for
+from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.inputs.values import brief, is_finite_number, numbers_in_si
-from squealpipe.text import as_number, suggestion
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.words import as_number, suggestion
 
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""

@@ -15,7 +15,7 @@ from squealpipe.inputs import (
     reader,
 )
 from squealpipe.parameters import TABLE
-from squealpipe.units import UnitError, has_unit
+from squealpipe.systems.inputs.units import UnitError, has_unit
 
 PARAMETER_NAMES = tuple(TABLE)
 NUMERIC_PARAMETERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")

@@ -12,7 +12,7 @@ With a negative ``belt_speed`` all of it is mirrored.
 from typing import NamedTuple
 
 from squealpipe.parameters import Parameters
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 
 class Reading(NamedTuple):

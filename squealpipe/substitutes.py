@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
 from squealpipe.laws import contact_laws
-from squealpipe.units import with_unit
+from squealpipe.systems.inputs.units import with_unit
 
 
 class Substitute(NamedTuple):

@@ -12,8 +12,8 @@ from squealpipe.inputs import STATE_NAMES, parse_angle, parse_number, reader
 from squealpipe.parameters import SYMBOLS, Parameters
 from squealpipe.ranges import parse_range
 from squealpipe.substitutes import SUBSTITUTES
-from squealpipe.text import as_number
-from squealpipe.units import has_unit, in_si
+from squealpipe.systems.inputs.units import has_unit, in_si
+from squealpipe.systems.inputs.words import as_number
 
 
 def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:

@@ -16,7 +16,7 @@ from squealpipe.cli.arguments import (
 )
 from squealpipe.cli.console import ExitCodes, answer, say
 from squealpipe.cli.output import PICTURES, check_output, draw, finish, write
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
 
 
 def plot(

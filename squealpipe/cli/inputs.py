@@ -16,7 +16,7 @@ from squealpipe.substitutes import (
     stands_for,
     stood_for,
 )
-from squealpipe.units import UnitError, has_unit, in_si
+from squealpipe.systems.inputs.units import UnitError, has_unit, in_si
 
 FLAGS = {name: f"--{name.replace('_', '-')}" for name in (*TABLE, *SUBSTITUTES)}
 UNITS_OF_FLAGS = {FLAGS[name]: units for name, units in UNITS_OF_INPUTS.items()}

@@ -9,7 +9,7 @@ from math import prod, sqrt
 from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.console import say
-from squealpipe.text import duration
+from squealpipe.systems.inputs.words import duration
 
 if TYPE_CHECKING:
     from squealpipe.parameters import Parameters

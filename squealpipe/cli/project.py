@@ -12,7 +12,7 @@ from squealpipe.cli.arguments import Configs, Force, Switch, Whole
 from squealpipe.cli.console import ExitCodes, current_session, say
 from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
-from squealpipe.text import duration
+from squealpipe.systems.inputs.words import duration
 
 HEAD = """\
 # A study of your own, laid over the paper's: what stands here replaces what stands there.

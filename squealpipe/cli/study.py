@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson, Configs, Switch, Texts
 from squealpipe.cli.console import ExitCodes, answer, working
-from squealpipe.text import duration
+from squealpipe.systems.inputs.words import duration
 
 
 def explain(

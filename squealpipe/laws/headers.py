@@ -12,7 +12,14 @@ from typing import NamedTuple
 
 from squealpipe.laws.numerals import numeral
 from squealpipe.laws.rows import FileLine, FileRow, FileRows
-from squealpipe.units import USUAL, UnitError, in_si, is_long_name, is_unit, plain_unit
+from squealpipe.systems.inputs.units import (
+    USUAL,
+    UnitError,
+    in_si,
+    is_long_name,
+    is_unit,
+    plain_unit,
+)
 
 COLUMN_UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
 """Column → CF unit in which its values are stored, and meant where none is written."""

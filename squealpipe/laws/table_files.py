@@ -24,7 +24,7 @@ from squealpipe.laws.headers import (
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
 from squealpipe.laws.rows import FileLine, FileRow, text_rows
 from squealpipe.laws.sheets import sheet
-from squealpipe.units import UnitError, in_si, is_unit
+from squealpipe.systems.inputs.units import UnitError, in_si, is_unit
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".xlsx")
 """Of files that are read as tables without being called so."""

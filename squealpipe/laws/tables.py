@@ -18,7 +18,7 @@ from squealpipe.laws.headers import COLUMN_UNITS
 from squealpipe.laws.one_file import without_neighbours
 from squealpipe.laws.table_files import ENDINGS, read_pairs
 from squealpipe.systems.inputs.values import numbers_in_si
-from squealpipe.text import as_number
+from squealpipe.systems.inputs.words import as_number
 
 BETWEEN = ("linear", "cubic")
 

@@ -17,7 +17,7 @@ from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.plotting.pad_scene import PadDrawing, PadLayout, pad_scene
 from squealpipe.plotting.structure_motion import SCHEMA as STRUCTURE_RUN
 from squealpipe.plotting.structure_motion import StructureMotion
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 
 

@@ -9,7 +9,7 @@ from squealpipe.codes import Verdict, flag_words
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined
 from squealpipe.schema import meanings
-from squealpipe.units import shown_in
+from squealpipe.systems.inputs.units import shown_in
 
 
 def figure(answer: xr.Dataset) -> Figure:

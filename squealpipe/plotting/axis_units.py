@@ -29,8 +29,8 @@ from squealpipe.plotting.style import (
     angle_in_words,
     symbol,
 )
-from squealpipe.text import RAISED, number
-from squealpipe.units import conversion, shown_in
+from squealpipe.systems.inputs.units import conversion, shown_in
+from squealpipe.systems.inputs.words import RAISED, number
 from squealpipe.vibration.sizes import is_real
 
 

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.structures.schema.squealing import JUST_ABOVE
-from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number
 
 
 def has_tracks(answer: xr.Dataset) -> bool:

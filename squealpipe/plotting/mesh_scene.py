@@ -24,8 +24,8 @@ from squealpipe.plotting.motion_panels import (
 )
 from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
-from squealpipe.text import number
-from squealpipe.units import shown_in
+from squealpipe.systems.inputs.units import shown_in
+from squealpipe.systems.inputs.words import number
 
 
 def projection(nodes: np.ndarray) -> np.ndarray:

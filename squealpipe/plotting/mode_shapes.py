@@ -12,8 +12,8 @@ from squealpipe.plotting import style
 from squealpipe.plotting.mesh_scene import Facets, projection
 from squealpipe.plotting.origin import common_friction
 from squealpipe.structures.meshes.datasets import mesh_of
-from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number
 
 
 def shape_of(modes: xr.Dataset, mode: int) -> np.ndarray:

@@ -11,8 +11,8 @@ from matplotlib.ticker import MaxNLocator
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
-from squealpipe.text import number
-from squealpipe.units import shown_in
+from squealpipe.systems.inputs.units import shown_in
+from squealpipe.systems.inputs.words import number
 
 
 def draw_modes(axes: Axes, modes: xr.Dataset) -> None:

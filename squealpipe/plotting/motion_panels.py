@@ -15,8 +15,8 @@ from matplotlib.text import Text
 from squealpipe.codes import Regime
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined
-from squealpipe.text import number
-from squealpipe.units import engineering, shown_in
+from squealpipe.systems.inputs.units import engineering, shown_in
+from squealpipe.systems.inputs.words import number
 
 CONTACT_LOOKS = {
     Regime.slip_slower: ("slip", style.REGIME_COLOURS["slip_slower"]),

@@ -12,8 +12,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from squealpipe.codes import Verdict
 from squealpipe.plotting import style
-from squealpipe.text import number
-from squealpipe.units import shown_in
+from squealpipe.systems.inputs.units import shown_in
+from squealpipe.systems.inputs.words import number
 
 MARKS = {
     Verdict.quiet: ".",

@@ -24,7 +24,7 @@ from squealpipe.plotting.motion_panels import (
     round_down,
 )
 from squealpipe.plotting.pad_motion import PadMotion
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 
 class PadLayout:

@@ -31,8 +31,8 @@ from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.plotting.structure_motion import SCHEMA as STRUCTURE_RUN
 from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.store.whole_files import whole_file
-from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number
 from squealpipe.vibration.parabola import vertex
 from squealpipe.vibration.settling import WindowLevels, difference
 from squealpipe.vibration.spectrum import (

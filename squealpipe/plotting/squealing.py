@@ -13,8 +13,8 @@ from squealpipe.plotting import style
 from squealpipe.plotting.hysteresis import draw_hysteresis, has_tracks
 from squealpipe.plotting.modes import draw_stability, frequency_unit, show_what_grows
 from squealpipe.schema import meanings
-from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number
 
 BARS_HEIGHT = 0.8
 """Height of all bars of one attractor together, over the distance between attractors."""

@@ -24,7 +24,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from squealpipe.parameters import TABLE
 from squealpipe.store.whole_files import whole_file
-from squealpipe.text import as_people_write
+from squealpipe.systems.inputs.words import as_people_write
 
 
 class Colour:

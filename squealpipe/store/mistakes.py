@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from squealpipe.parameters import SYMBOLS
 from squealpipe.systems.inputs.values import brief
-from squealpipe.text import in_words, nearest
+from squealpipe.systems.inputs.words import in_words, nearest
 
 
 class ConfigError(ValueError):

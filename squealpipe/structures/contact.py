@@ -11,8 +11,8 @@ import numpy as np
 from squealpipe.laws.contact_laws import LINEAR, lines_of
 from squealpipe.laws.tables import is_table, scaled
 from squealpipe.parameters import TABLE, finite_number
+from squealpipe.systems.inputs.units import refuse_units
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
-from squealpipe.units import refuse_units
 from squealpipe.validation import real_array
 
 

@@ -23,7 +23,7 @@ from squealpipe.store.whole_files import whole_file
 from squealpipe.structures.contact import Contact, PointOrigin
 from squealpipe.structures.units import Scales
 from squealpipe.systems.inputs.values import brief
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
 ORIGIN_COLUMNS = ("nodes", "against", "area", "gap", "facet", "x", "y", "z")

@@ -12,7 +12,7 @@ from squealpipe.structures.schema.structures import MODES_ARGUMENTS, OF_CONTACT,
 from squealpipe.structures.spectrum import Limits, check_frequency
 from squealpipe.structures.varied_friction import VariedFriction, varied_by
 from squealpipe.systems.inputs.values import brief, is_whole_number
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.validation import real_array
 
 

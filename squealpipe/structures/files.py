@@ -27,7 +27,7 @@ from squealpipe.structures.readers import Labelled, read_matrix
 from squealpipe.structures.units import SI, Scales, scales_of
 from squealpipe.systems.inputs.units import holds_units
 from squealpipe.systems.inputs.values import brief, is_finite_number
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.validation import real_array
 
 Form = TypeVar("Form", bound=ContactStructure)

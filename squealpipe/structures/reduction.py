@@ -25,10 +25,10 @@ from squealpipe.structures.modes import modes_at_rest
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Limits, Solver, check_frequency
+from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.one_thread import one_thread
 from squealpipe.systems.progress import report, stage, stop_is_asked
-from squealpipe.units import engineering
 
 
 @dataclass(frozen=True)

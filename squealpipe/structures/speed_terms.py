@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from squealpipe.structures.matrices import real_square
 from squealpipe.systems.inputs.values import brief, is_whole_number, numbers_in_si
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 TERM_UNITS = {"damping": "N s m-1", "stiffness": "N m-1"}
 """Matrix that speed terms are parts of → its CF unit."""

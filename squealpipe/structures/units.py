@@ -2,8 +2,8 @@
 
 from typing import Any, NamedTuple
 
+from squealpipe.systems.inputs.units import UnitError, in_si
 from squealpipe.systems.inputs.values import brief
-from squealpipe.units import UnitError, in_si
 
 
 class Scales(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.systems.inputs.values import brief, numbers_in_si
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import ARCHIVES, MANIFEST
 from squealpipe.store.yaml_files import flat
 from squealpipe.study.configuration.settings import PAPER, Study, read_study
-from squealpipe.text import nearest
+from squealpipe.systems.inputs.words import nearest
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,7 @@ from squealpipe.store.whole_files import StoreError
 from squealpipe.store.yaml_files import flat, read_yaml
 from squealpipe.study.configuration.settings import PAPER, Study, read_study
 from squealpipe.study.durations import job_times, together
-from squealpipe.text import duration
+from squealpipe.systems.inputs.words import duration
 
 FIGURE = re.compile(r"figures/([\w-]+)\.\w+$")
 

@@ -16,7 +16,7 @@ from squealpipe.structures.structure import Structure
 from squealpipe.study.chunks import Run
 from squealpipe.study.point_sweep import PointSweep
 from squealpipe.study.scatter import scattered_values
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 TASK = operating_map.__name__
 REDUCTION = ("n_modes", "frequency_max")

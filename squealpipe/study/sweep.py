@@ -43,8 +43,8 @@ from squealpipe.study.structure_sweep import StructureSweep
 from squealpipe.study.sweep_plan import SweepPlan
 from squealpipe.study.swept_tasks import MAPS, TASKS, options_of
 from squealpipe.study.system_sweep import SystemSweep, is_system
-from squealpipe.text import suggestion
-from squealpipe.units import holds_units
+from squealpipe.systems.inputs.units import holds_units
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.validation import Line, Workers, checked
 
 

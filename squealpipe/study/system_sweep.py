@@ -18,11 +18,11 @@ from squealpipe.ranges import longest
 from squealpipe.study.chunks import Chunks, Run
 from squealpipe.study.sweep_plan import SweepPlan
 from squealpipe.systems import basin, runs
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.processes import available_cores
 from squealpipe.systems.progress import part_of_work
 from squealpipe.systems.system import System
 from squealpipe.systems.taylor.simd import LANES
-from squealpipe.text import suggestion
 
 FIRST_BLOCK, LARGEST_BLOCK = LANES, 8192
 """Runs of the first block, and of the largest."""

@@ -23,7 +23,7 @@ from squealpipe.study.configuration.settings import (
     parse_study,
     read_study,
 )
-from squealpipe.units import kind_and_example
+from squealpipe.systems.inputs.units import kind_and_example
 
 ROOT = Path(__file__).resolve().parents[2]
 PAPER = ROOT / "workflow/config/paper.yaml"

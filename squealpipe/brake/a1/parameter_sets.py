@@ -15,8 +15,8 @@ from squealpipe.laws.springs import LONG_SPRING
 from squealpipe.laws.tables import is_table
 from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, PHYSICAL, TABLE, Parameters
 from squealpipe.systems.inputs.values import brief
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.system import System
-from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
 

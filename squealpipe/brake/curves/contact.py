@@ -36,7 +36,7 @@ from squealpipe.parameters import HORIZON, PHYSICAL, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.inputs.values import brief
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.validation import Line, Number, Positive, Tolerance, Workers, one_of
 
 LOST_SIDE = 1e-8

@@ -12,7 +12,7 @@ from squealpipe.brake.schema.dynamics.runs import run_summary_schema
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
 from squealpipe.vibration.sizes import is_real
 from squealpipe.vibration.spectrum import (
     FEWEST,

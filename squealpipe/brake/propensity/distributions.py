@@ -11,7 +11,7 @@ from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.parameters import Parameters
 from squealpipe.ranges import NUMERIC_PARAMETERS
 from squealpipe.systems.inputs.values import brief, is_finite_number
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 DISTRIBUTIONS: dict[str, tuple[str, str]] = {
     "uniform": ("low", "high"),

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.study.evidence import MissingDataError
-from squealpipe.text import as_people_write
+from squealpipe.systems.inputs.words import as_people_write
 
 
 class Finding(NamedTuple):

@@ -13,7 +13,7 @@ from squealpipe.parameters import (
     law_in_words,
 )
 from squealpipe.reading import for_linear, reading_of
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 
 def friction_in_words(parameters: Parameters, reading: str) -> str:

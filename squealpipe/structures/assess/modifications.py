@@ -23,7 +23,7 @@ from squealpipe.parameters import finite_number
 from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.systems.inputs.values import brief, is_whole_number
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 MATRICES = {
     "added_mass": ("mass", "kg"),

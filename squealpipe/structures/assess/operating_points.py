@@ -38,7 +38,7 @@ from squealpipe.structures.schema.operating_map import (
 from squealpipe.structures.squeal.plant import Plant, in_modes
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.systems.inputs.values import brief
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.vibration.schema import MEAN_SQUARES, error_of
 from squealpipe.vibration.settling import settling_of_numbers
 

@@ -19,9 +19,9 @@ from squealpipe.laws.numerals import decimal_sign, numeral, plain
 from squealpipe.laws.rows import FileRows, text_rows
 from squealpipe.laws.sheets import sheet
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.systems.inputs.units import UnitError, in_si
 from squealpipe.systems.inputs.values import brief, is_finite_number
-from squealpipe.text import as_number, suggestion
-from squealpipe.units import UnitError, in_si
+from squealpipe.systems.inputs.words import as_number, suggestion
 
 
 @dataclass(frozen=True)

@@ -27,9 +27,9 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.schema.propensity import structure_propensity_schema
 from squealpipe.structures.varied_friction import VariedFriction
 from squealpipe.systems.inputs.values import brief
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.processes import available_cores, run_shared
 from squealpipe.systems.progress import with_progress
-from squealpipe.text import suggestion
 from squealpipe.validation import Seed, Tolerance, Whole, Workers
 from squealpipe.vibration import sobol
 from squealpipe.vibration.shares import wilson_interval

@@ -20,7 +20,7 @@ from squealpipe.structures.meshes.faces import THE_BELT, Face, Rotation
 from squealpipe.structures.meshes.merging import merged
 from squealpipe.structures.meshes.pairing import FacetedSurface, Partner
 from squealpipe.structures.meshes.shape_functions import shares
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
 
 
 class _Point(NamedTuple):

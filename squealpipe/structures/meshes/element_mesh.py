@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from squealpipe.structures.meshes.finite_elements import CORNERS, ELEMENTS
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 Facets = dict[int, np.ndarray]
 """Number of nodes of a facet → indices of its nodes, (facets, that number), outwards."""

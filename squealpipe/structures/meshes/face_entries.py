@@ -12,7 +12,7 @@ from squealpipe.laws.tables import named
 from squealpipe.structures.meshes.faces import Face
 from squealpipe.structures.units import SI, Scales
 from squealpipe.systems.inputs.values import brief, is_finite_number
-from squealpipe.text import suggestion
+from squealpipe.systems.inputs.words import suggestion
 
 
 def faces_in(content: Any, folder: Path, scales: Scales) -> dict[str, Face]:

@@ -20,8 +20,8 @@ from squealpipe.structures.meshes.gaps import gaps_of
 from squealpipe.structures.meshes.sources import mesh_of_source
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.structures.readers import read_names
+from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.inputs.values import brief
-from squealpipe.units import engineering
 
 
 class OfMesh(NamedTuple):

@@ -11,8 +11,8 @@ import numpy as np
 
 from squealpipe.structures.contact import Contact, face_of
 from squealpipe.structures.meshes.pairing import Pairing
-from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number
 
 
 class FaceGaps(NamedTuple):

@@ -31,9 +31,9 @@ from squealpipe.structures.squeal.windows import (
     run,
     run_windows,
 )
+from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.processes import available_cores
 from squealpipe.systems.progress import partial_answer, stop_is_asked, with_progress
-from squealpipe.units import engineering
 from squealpipe.vibration.settled_runs import Horizon, Quietness, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import settling_of_verdicts

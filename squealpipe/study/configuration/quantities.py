@@ -14,7 +14,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from squealpipe.inputs import parse_angle
 from squealpipe.parameters import KEYS_THAT_TAKE, Parameters
-from squealpipe.units import has_unit, number_of
+from squealpipe.systems.inputs.units import has_unit, number_of
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from squealpipe.systems.inputs.words import duration
 from squealpipe.systems.progress import shown
-from squealpipe.text import duration
 
 LOG_EVERY = 30.0
 """Time between two lines of progress in a log, s."""

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from squealpipe.study.durations import together
-from squealpipe.text import duration
+from squealpipe.systems.inputs.words import duration
 
 
 @dataclass

@@ -10,8 +10,8 @@ import xarray as xr
 from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome
 from squealpipe.structures.schema.squealing import GIVE_DAMPING
-from squealpipe.text import number, off_by, percent
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number, off_by, percent
 from squealpipe.vibration.schema import Mechanism, error_of
 
 NAMES = {

@@ -7,8 +7,8 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.study.report import answer
-from squealpipe.text import part_of_time
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import part_of_time
 
 
 def answer_content(told: xr.Dataset) -> dict[str, Any]:

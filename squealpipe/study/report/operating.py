@@ -10,8 +10,8 @@ from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome
 from squealpipe.structures.schema.operating_map import Match
 from squealpipe.study.report.squealing import without_bound
-from squealpipe.text import number, off_by, percent
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number, off_by, percent
 
 
 def lines(dataset: xr.Dataset) -> Iterator[str]:

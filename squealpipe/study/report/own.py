@@ -19,8 +19,8 @@ from squealpipe.study.report.answer_content import answer_content
 from squealpipe.study.report.media import media_of
 from squealpipe.study.report.parts import Made, changed_rows, parameter_table, pictures
 from squealpipe.study.report.sections import OWN
-from squealpipe.text import number, percent
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number, percent
 
 
 def gather_own(

@@ -14,7 +14,7 @@ from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import checksum
 from squealpipe.study.figures import declared
-from squealpipe.units import shown_in
+from squealpipe.systems.inputs.units import shown_in
 
 
 @dataclass(frozen=True, kw_only=True)

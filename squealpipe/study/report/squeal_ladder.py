@@ -8,8 +8,8 @@ import xarray as xr
 from squealpipe.benchmark.schema import Role
 from squealpipe.structures.schema.squeal_ladder import PushAnswer
 from squealpipe.systems.datasets.outcomes import Outcome
-from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number
 
 
 def lines(ladder: xr.Dataset) -> list[str]:

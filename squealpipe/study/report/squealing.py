@@ -19,8 +19,8 @@ from squealpipe.structures.schema.squealing import (
     OnsetKind,
 )
 from squealpipe.study.report.answer import damping_advice, is_shifted, level_change
-from squealpipe.text import number, off_by, part_of_time, percent
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number, off_by, part_of_time, percent
 
 LISTED = 8
 """Attractors and modes that are told."""

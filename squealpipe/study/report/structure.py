@@ -21,8 +21,8 @@ from squealpipe.study.report.media import media_of
 from squealpipe.study.report.operating import lines
 from squealpipe.study.report.parts import Made, pictures
 from squealpipe.study.report.sections import STRUCTURE
-from squealpipe.text import number, part_of_time, percent
-from squealpipe.units import engineering, shown_in
+from squealpipe.systems.inputs.units import engineering, shown_in
+from squealpipe.systems.inputs.words import number, part_of_time, percent
 
 
 def gather_structure(

@@ -15,7 +15,7 @@ from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.schema import meanings
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report import answer
-from squealpipe.units import plain_unit
+from squealpipe.systems.inputs.units import plain_unit
 
 CURE_COLUMNS = {
     "now": "value",

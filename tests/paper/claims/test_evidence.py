@@ -6,7 +6,7 @@ import pytest
 from squealpipe.paper.claims.evidence import finding
 from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.study.evidence import MissingDataError
-from squealpipe.text import as_people_write
+from squealpipe.systems.inputs.words import as_people_write
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from squealpipe.structures.schema.operating_map import Match
 from squealpipe.study.chunks import Chunks
 from squealpipe.study.report.operating import lines as words
 from squealpipe.study.sweep import joined, planned, run_sweep
-from squealpipe.text import percent
+from squealpipe.systems.inputs.words import percent
 
 STIFFNESS = 6e6
 UNITS = OperatingUnits("m s-1", np.nan)

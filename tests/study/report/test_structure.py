@@ -27,7 +27,7 @@ from squealpipe.study.structure_study import (
     settled_motion,
     squealing,
 )
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 MU = 0.5
 

@@ -11,7 +11,7 @@ from squealpipe.benchmark.schema import Reliability
 from squealpipe.plotting import style
 from squealpipe.plotting.work_precision import rule_table
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 _COLOURS = [
     style.Colour.white,

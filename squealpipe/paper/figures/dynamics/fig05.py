@@ -8,7 +8,7 @@ from squealpipe.paper.figures.dynamics.fig02 import inset_mechanism
 from squealpipe.plotting import style
 from squealpipe.plotting.run import draw_force
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 
 @report_figure(

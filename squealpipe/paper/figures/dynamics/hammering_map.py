@@ -11,7 +11,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 from squealpipe.paper.figures.linear.linear_overlay import mark_figure_3
 from squealpipe.plotting import plot, style
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 
 @report_figure(

@@ -10,7 +10,7 @@ from squealpipe.codes import flag_words
 from squealpipe.plotting import style
 from squealpipe.schema import meanings
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 
 @report_figure(

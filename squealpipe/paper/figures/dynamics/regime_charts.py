@@ -17,7 +17,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.cycles import key_entries
 from squealpipe.plotting.origin import scene_title, time_unit
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 LINE_LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.contact_lost: ("contact is lost", {"color": style.Colour.black}),

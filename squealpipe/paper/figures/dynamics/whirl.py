@@ -13,7 +13,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import time_unit
 from squealpipe.schema import meanings
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 
 def caption(_: xr.Dataset, sizes: xr.Dataset) -> str:

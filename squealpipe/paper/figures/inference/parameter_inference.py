@@ -9,7 +9,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from squealpipe.paper.schema.inference import in_order, in_words, of_study
 from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 READING_LOOKS = (
     ("as printed", style.Colour.green, "s"),

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import angle_pair, parameter
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 LARGEST_SHOWN = 1.5
 """Upper end of the colours of (a)."""

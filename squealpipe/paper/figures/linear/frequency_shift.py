@@ -9,7 +9,7 @@ from squealpipe.paper.figures.panels.frequency_map import hatch_key, isoline, ou
 from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
+from squealpipe.systems.inputs.words import number
 
 NO_SHIFT = 1e-9
 """A shift below this is none: where K12 = 0 one frequency does not depend on contact."""

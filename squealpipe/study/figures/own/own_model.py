@@ -14,8 +14,8 @@ from squealpipe.plotting.mechanism import SPRING_COLOURS, arrow, displaced_sprin
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.style import PAGE, Colour, new_figure, panel_letters, write
 from squealpipe.study.figures.declared import report_figure
-from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
+from squealpipe.systems.inputs.words import number
 
 
 @report_figure(

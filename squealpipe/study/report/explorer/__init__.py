@@ -18,7 +18,7 @@ from squealpipe.plotting.origin import parameter
 from squealpipe.schema import meanings
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.explorer.layers import Layer
-from squealpipe.units import engineering
+from squealpipe.systems.inputs.units import engineering
 
 
 def write_explorer(
