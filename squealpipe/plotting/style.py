@@ -3,6 +3,8 @@
 import io
 import math
 import os
+import struct
+import zlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from string import ascii_lowercase
@@ -19,8 +21,6 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 from matplotlib.ticker import ScalarFormatter
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from squealpipe.parameters import TABLE
 from squealpipe.store.whole_files import whole_file
@@ -347,16 +347,27 @@ def save_figure(
 
 
 def _draw_png(canvas: Any, content: io.BytesIO) -> None:
-    """Draw a figure as a PNG without transparency, which a PDF would have to take apart."""
+    """Draw a figure as a PNG without transparency, which a PDF would have to take apart.
+
+    Its lines are packed as they are. Pillow tries five filters on each, which takes longer than
+    all packing, and drawings get no smaller by it.
+    """
     canvas.draw()
-    tags = PngInfo()
-    tags.add_text("Software", "squealpipe")
-    dots = canvas.figure.dpi
     opaque = np.asarray(canvas.buffer_rgba())[..., :3]
-    # level 3 takes two thirds of the time of 6, for files larger by 7 %
-    written: dict[str, Any] = {
-        "dpi": (dots, dots),
-        "pnginfo": tags,
-        "compress_level": 3,
-    }
-    Image.fromarray(opaque).save(content, "png", **written)
+    height, width, _ = opaque.shape
+    lines = np.zeros(
+        (height, 1 + 3 * width), np.uint8
+    )  # each begins with its filter, 0
+    lines[:, 1:] = opaque.reshape(height, -1)
+    dots = round(canvas.figure.dpi / 0.0254)  # per metre
+    content.write(b"\x89PNG\r\n\x1a\n")
+    for name, data in (
+        (b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)),  # 8 bits, RGB
+        (b"pHYs", struct.pack(">2IB", dots, dots, 1)),
+        (b"tEXt", b"Software\0squealpipe"),
+        (b"IDAT", zlib.compress(lines.tobytes(), 3)),
+        (b"IEND", b""),
+    ):
+        check = zlib.crc32(name + data)
+        content.write(struct.pack(">I", len(data)) + name + data)
+        content.write(struct.pack(">I", check))

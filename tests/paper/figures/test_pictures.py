@@ -7,6 +7,7 @@ python -m pytest tests/paper/figures --mpl-generate-path=tests/paper/figures/bas
 import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
 
 from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.brake.linear.maps import stability_map
@@ -82,3 +83,19 @@ def test_all_files_of_a_figure_have_the_layout_of_the_first(tmp_path):
     assert layout(both) == layout(first) != unset
     assert (tmp_path / "both.png").read_bytes() == (tmp_path / "first.png").read_bytes()
     assert "another one" in (tmp_path / "both.svg").read_text(encoding="utf-8")
+
+
+def test_a_png_holds_the_pixels_that_matplotlib_writes(tmp_path):
+    figure, axes = new_figure(2.0, 1.5)
+    axes[0, 0].imshow(np.random.default_rng(1).random((9, 7)), cmap="viridis")
+    save_figure(figure, [tmp_path / "ours.png"], dpi=130)
+    figure.savefig(tmp_path / "theirs.png", dpi=130)
+    with Image.open(tmp_path / "ours.png") as checked:
+        checked.verify()
+    with (
+        Image.open(tmp_path / "ours.png") as ours,
+        Image.open(tmp_path / "theirs.png") as theirs,
+    ):
+        assert (ours.mode, ours.info["Software"]) == ("RGB", "squealpipe")
+        assert ours.info["dpi"] == theirs.info["dpi"]
+        np.testing.assert_array_equal(ours, theirs.convert("RGB"))
