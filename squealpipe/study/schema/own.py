@@ -12,17 +12,6 @@ from squealpipe.brake.schema.dynamics.runs import (
 from squealpipe.brake.schema.linear import angles_of_one_pair
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome, text
 
-NUMBERS = (
-    "first_separation_time",
-    "separated_fraction",
-    "stick_fraction",
-    "return_peak_contact_force",
-    "impact_speed",
-    "largest_x",
-    "largest_y",
-)
-"""Quantities that are given of each run, as in its summary."""
-
 
 def _number(meaning: str, units: str = "1") -> Variable:
     return Variable(
