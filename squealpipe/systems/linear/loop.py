@@ -53,13 +53,12 @@ from squealpipe.systems.taylor.lanes import (
 from squealpipe.systems.taylor.loop import finish, start
 from squealpipe.systems.taylor.memory import memory_at
 from squealpipe.systems.taylor.observation import (
-    begin_late,
     extremes_between,
     extremes_inside,
     sample,
 )
 from squealpipe.systems.taylor.step import cut, series_convergence
-from squealpipe.systems.taylor.switching import parameters_of, switch, watch
+from squealpipe.systems.taylor.switching import end_step, parameters_of
 
 _FOLDER = Path(__file__).parent
 _record_at: Any = record_viewer(layout.LOOP_TABLE)
@@ -294,19 +293,8 @@ def _switch(t: Any, m: Any, c: Any, tangent_row: int, special: bool) -> None:
     """Carry out what ended a step."""
     for surface in range(t.n_surfaces):
         m.fresh[surface] = 0
-    if not special:
-        return
-    hit = m.integers[layout.integers.hit, LANE]
-    if hit == layout.integers.late_begins:
-        begin_late(t, m, LANE, tangent_row + t.n_states)
-        # a surface may be crossed at this very instant
-        watch(t, m, c, LANE, m.rows[layout.numbers.step, LANE])
-    elif (
-        hit >= 0
-        and m.integers[layout.integers.outcome, LANE] == layout.outcomes.running
-    ):
-        switch(t, m, c, LANE, tangent_row)
-    m.integers[layout.integers.hit, LANE] = -1
+    if special:
+        end_step(t, m, c, LANE, tangent_row)
 
 
 @part

@@ -317,14 +317,20 @@ def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
     while special:
         lane = first_bit(special)
         special ^= 1 << lane
-        hit = m.integers[layout.integers.hit, lane]
-        if hit == layout.integers.late_begins:
-            begin_late(t, m, lane, tangent_row + t.n_states)
-            # a surface may be crossed at this very instant
-            watch(t, m, c, lane, m.rows[layout.numbers.step, lane])
-        elif (
-            hit >= 0
-            and m.integers[layout.integers.outcome, lane] == layout.outcomes.running
-        ):
-            switch(t, m, c, lane, tangent_row)
-        m.integers[layout.integers.hit, lane] = -1
+        end_step(t, m, c, lane, tangent_row)
+
+
+@inline
+def end_step(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
+    """Carry out what ended the step of a lane."""
+    hit = m.integers[layout.integers.hit, lane]
+    if hit == layout.integers.late_begins:
+        begin_late(t, m, lane, tangent_row + t.n_states)
+        # a surface may be crossed at this very instant
+        watch(t, m, c, lane, m.rows[layout.numbers.step, lane])
+    elif (
+        hit >= 0
+        and m.integers[layout.integers.outcome, lane] == layout.outcomes.running
+    ):
+        switch(t, m, c, lane, tangent_row)
+    m.integers[layout.integers.hit, lane] = -1
