@@ -56,38 +56,41 @@ def run_to_its_end(command: Sequence[str], env: Mapping[str, str]) -> int:
     return code
 
 
-def remove_stale_lock(folder: Path = Path()) -> str:
+def remove_stale_lock() -> str:
     """Remove Snakemake's lock of a run that is dead; what to say about it, empty: nothing.
 
     A lock stays where a Snakemake works in the folder, or may do so on another machine.
     """
-    locks, holders = folder / LOCKS, list((folder / HOLDERS).glob("*.json"))
-    if not locks.is_dir() or not any(locks.iterdir()) or not holders:
+    holders = list(HOLDERS.glob("*.json"))
+    if not _is_locked() or not holders:
         return ""
     stated = _stated(holders)
     elsewhere = [each for each in stated if each["host"] != socket.gethostname()]
-    if not stated or elsewhere or _works_in(folder):
+    if not stated or elsewhere or _works_here():
         return ""
-    shutil.rmtree(locks)
+    shutil.rmtree(LOCKS)
     for path in holders:
         path.unlink(missing_ok=True)
     numbers = ", ".join(str(each["pid"]) for each in stated)
     return f"removed the lock of a run that was killed (process {numbers})"
 
 
-def standing_lock(folder: Path = Path()) -> str:
+def standing_lock() -> str:
     """Return the remedy for a lock that stays, for its holder may live; empty text if there is
     none.
     """
-    locks = folder / LOCKS
-    if not locks.is_dir() or not any(locks.iterdir()):
+    if not _is_locked():
         return ""
-    stated = _stated((folder / HOLDERS).glob("*.json"))
+    stated = _stated(HOLDERS.glob("*.json"))
     who = ", ".join(f"process {each['pid']} on {each['host']}" for each in stated)
     return (
         f"another run holds the lock of this folder ({who or 'not started by squealpipe'}); "
-        f"wait for it or, if it is dead, delete the folder {locks.resolve()}"
+        f"wait for it or, if it is dead, delete the folder {LOCKS.resolve()}"
     )
+
+
+def _is_locked() -> bool:
+    return LOCKS.is_dir() and any(LOCKS.iterdir())
 
 
 def _stated(holders: Iterable[Path]) -> list[dict[str, Any]]:
@@ -99,13 +102,13 @@ def _stated(holders: Iterable[Path]) -> list[dict[str, Any]]:
     return stated
 
 
-def _works_in(folder: Path) -> bool:
-    """Return whether a Snakemake of this machine works in a folder."""
+def _works_here() -> bool:
+    """Return whether a Snakemake of this machine works in this folder."""
     import psutil
 
     for process in psutil.process_iter(["cmdline", "cwd"]):
         about = process.info
-        if about["cwd"] and Path(about["cwd"]) == folder.resolve():
+        if about["cwd"] and Path(about["cwd"]) == Path.cwd():
             words = about["cmdline"] or []
             if any(Path(word).name == "snakemake" for word in words):
                 return True

@@ -68,9 +68,9 @@ def percent(share: float, digits: int = 2) -> str:
     return f"{number(100.0 * share, digits)} %"
 
 
-def off_by(share: float, digits: int = 2) -> str:
+def off_by(share: float) -> str:
     """Return a relative difference in words: ``3 % above``, ``0.2 % below``."""
-    return f"{percent(abs(share), digits)} {'above' if share > 0 else 'below'}"
+    return f"{percent(abs(share))} {'above' if share > 0 else 'below'}"
 
 
 def part_of_time(share: float) -> str:

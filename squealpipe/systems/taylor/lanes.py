@@ -137,18 +137,14 @@ def view(address: int, shape: Any, dtype: Any) -> Any:
     return _numba.carray(_address(address), shape, dtype)
 
 
-def record_viewer(record: np.dtype, *, of_pointer: bool = False) -> Any:
-    """Return a compiled function that gives the record of a type at an address, or a pointer."""
+def record_viewer(record: np.dtype) -> Any:
+    """Return a compiled function that gives the record of a type at an address."""
 
     @views
-    def record_at(pointer: Any) -> Any:
-        return _numba.carray(pointer, (1,), record)[0]
+    def record_at(address: int) -> Any:
+        return _numba.carray(_address(address), (1,), record)[0]
 
-    @views
-    def record_at_address(address: int) -> Any:
-        return record_at(_address(address))
-
-    return record_at if of_pointer else record_at_address
+    return record_at
 
 
 class Workspace:
