@@ -134,7 +134,7 @@ class Flow(ABC):
 
     @abstractmethod
     def jacobian(
-        self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
+        self, values: Mapping[str, float], regime: int, state: Vector
     ) -> Vector:
         """Return ∂f/∂(states, followed parameters, time), (size, columns)."""
 
@@ -334,11 +334,12 @@ class TracedFlow(Flow):
         return np.array(function(*at, *self.numbers(values, regime)), float)
 
     def jacobian(
-        self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
+        self, values: Mapping[str, float], regime: int, state: Vector
     ) -> Vector:
         """Return ∂f/∂(states, followed parameters, time), (size, columns)."""
         matrix = np.zeros((self.size, self.columns))
-        entries = self._at(self.slopes, values, regime, state, time)
+        # asked only of motions that nothing forces, whose field reads no time
+        entries = self._at(self.slopes, values, regime, state, 0.0)
         for (i, j, _), value in zip(self.entries, entries, strict=True):
             matrix[i, j] = value
         return matrix

@@ -348,11 +348,7 @@ class LinearFlow(Flow):
         return self._forces(values, regime, state).rates
 
     def jacobian(
-        self,
-        values: Mapping[str, float],
-        regime: int,
-        state: Vector,
-        time: float = 0.0,  # noqa: ARG002
+        self, values: Mapping[str, float], regime: int, state: Vector
     ) -> Vector:
         """∂f/∂(states, followed parameters), (n, n + p)."""
         by = [each.rates.imag / TINY for each in self._beside(values, regime, state)]
