@@ -129,11 +129,10 @@ def error_of_rounding_of_square(
 
 
 def polished(
-    pencil: Pencil, value: complex, right: np.ndarray, left: np.ndarray | None = None
+    pencil: Pencil, value: complex, right: np.ndarray, left: np.ndarray
 ) -> Eigenpair:
     """The eigenpair next to an estimate."""
-    right = right.astype(complex)
-    left = right if left is None else left.astype(complex)
+    right, left = right.astype(complex), left.astype(complex)
     change, rate = np.inf, 0j
     for _ in range(4):
         # relative: at the eigenvalue itself the matrix is singular

@@ -360,10 +360,10 @@ def kind_and_example(units: str) -> tuple[str, str]:
     return QUANTITIES.get(units, (f"a value in {plain}", f"1 {plain}"))
 
 
-def with_unit(value: float, units: str, digits: int = 4) -> str:
+def with_unit(value: float, units: str) -> str:
     """A value of a CF unit as people write it: 4 kN, 0.5714 mm."""
     factor, name = shown_in(value, units)
-    return f"{value * factor:.{digits}g} {name}".rstrip()
+    return f"{value * factor:.4g} {name}".rstrip()
 
 
 def engineering(value: float, units: str, digits: int = 3) -> str:

@@ -13,8 +13,8 @@ from squealpipe.schema import (
 )
 
 
-def _largest(units: str, meaning: str) -> Variable:
-    return or_nan(meaning, units, ("level", "scene"), rtol=1e-6)
+def _largest(meaning: str) -> Variable:
+    return or_nan(meaning, "m", ("level", "scene"), rtol=1e-6)
 
 
 assumptions_schema = DatasetSchema(
@@ -43,9 +43,9 @@ assumptions_schema = DatasetSchema(
             "scene",
             "assumption",
         ),
-        "largest_x": _largest("m", "largest |x|"),
-        "largest_y": _largest("m", "largest y"),
-        "max_displacement": _largest("m", "largest distance from the start position"),
+        "largest_x": _largest("largest |x|"),
+        "largest_y": _largest("largest y"),
+        "max_displacement": _largest("largest distance from the start position"),
         "t_end": Variable("end of the motion", "s", ("scene",)),
         "outcome": outcome(
             "level",
