@@ -12,7 +12,7 @@ from squealpipe.inputs import parse_angle, parse_number
 from squealpipe.laws.contact_laws import own_law_rules as contact_rules
 from squealpipe.laws.friction_laws import own_law_rules as friction_rules
 from squealpipe.laws.table_files import read_pairs
-from squealpipe.systems.inputs.units import UnitError, in_si
+from squealpipe.units import UnitError, in_si
 
 # fmt: off
 QUANTITIES = {

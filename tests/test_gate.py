@@ -29,8 +29,8 @@ from squealpipe.brake.linear.maps import stability_map
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.units import scales_of
 from squealpipe.systems.inputs.gate import reals
-from squealpipe.systems.inputs.units import UnitError, in_si, number_of
 from squealpipe.systems.shipped import impact_oscillator as shipped
+from squealpipe.units import UnitError, in_si, number_of
 
 QUANTITY = pint.UnitRegistry().Quantity
 PAD = Parameters(k1=1e7, k2=1e7, k3=7e6, mass=0.45, preload=5e-4, length1=0.02)

@@ -14,7 +14,7 @@ from squealpipe import Contact, Structure, simulate
 from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
 from squealpipe.ranges import parse_range, read_fixed, read_values
 from squealpipe.structures import elastic_pad
-from squealpipe.systems.inputs.units import (
+from squealpipe.units import (
     UnitError,
     conversion,
     has_unit,
