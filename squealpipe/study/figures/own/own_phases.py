@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from squealpipe.codes import Verdict
 from squealpipe.plotting import style
 from squealpipe.plotting.animation import draw_phases
+from squealpipe.plotting.motion_panels import COLOURS_IN_WORDS
 from squealpipe.study.figures.declared import report_figure
 
 
@@ -16,8 +17,8 @@ from squealpipe.study.figures.declared import report_figure
     reads=("assess/*",),
     caption=(
         "One period of the settled motion of each scene, from left to right. The mass is drawn on "
-        "its springs above the belt, its displacements enlarged. Blue: the contact slips; orange: "
-        "it sticks; black: it is open."
+        "its springs above the belt, its displacements enlarged. "
+        f"{COLOURS_IN_WORDS}"
     ),
     alt="For each scene eight drawings of the mass on its springs, an eighth of a period apart.",
 )
