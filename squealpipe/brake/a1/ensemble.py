@@ -48,6 +48,17 @@ def _column(name: str, place: int | None = None) -> Any:
     return property(values)
 
 
+def _turns(name: str) -> Any:
+    """Net turns around both fixed ends, to half a turn; 0 where they turn against one another."""
+
+    def turns(self: Ensemble) -> np.ndarray:
+        first, second = np.moveaxis(self._raw[name], -1, 0)
+        least = 0.5 * np.sign(first) * np.minimum(np.abs(first), np.abs(second))
+        return self._shaped(np.where(first * second > 0, least, 0.0))
+
+    return property(turns)
+
+
 def _spent(regime: Regime, durations: str = "durations") -> Any:
     """Total time in a regime, s."""
 
@@ -81,14 +92,16 @@ class Ensemble:
     early_max_x, early_max_vx = _largest("x", "early_"), _largest("vx", "early_")
     """Before ``t_late``; those that are late from there on."""
     late_max_x, late_max_vx = _largest("x", "late_"), _largest("vx", "late_")
-    sample_contacts = _count(Event.contact, "sample_counts")
+    sample_separations = _count(Event.separation, "sample_counts")
     """What has added up at the samples, with ``sums``; likewise the following."""
+    sample_contacts = _count(Event.contact, "sample_counts")
     sample_separated_time = _spent(Regime.separated, "sample_durations")
     sample_stick_time = _spent(Regime.stick, "sample_durations")
+    sample_turns = _turns("sample_half_turns")
     sample_log_growth = _column("sample_growth", 0)
     """The growth is that at the end of the step before."""
-    log_growth = _column("log_growth")
-    """ln of the growth of a perturbation, 0 without ``tangent``."""
+    turns, log_growth = _turns("half_turns"), _column("log_growth")
+    """Counterclockwise positive; ln of the growth of a perturbation, 0 without ``tangent``."""
     time = _column("reached")
     predictability_horizon = _column("horizon")
     """Time reached, and that at which an error of ``tol`` has grown to l_pre/1000 (NaN: not before
@@ -124,15 +137,6 @@ class Ensemble:
         """Smallest and largest value of a tracked quantity."""
         values = self._raw[f"{part}extremes"][:, self._tracked.index(name)]
         return values[:, 0], values[:, 1]
-
-    @property
-    def turns(self) -> np.ndarray:
-        """Net turns around both fixed ends, to half a turn, counterclockwise positive; 0 where they
-        turn against one another.
-        """
-        first, second = np.moveaxis(self._raw["half_turns"], -1, 0)
-        least = 0.5 * np.sign(first) * np.minimum(np.abs(first), np.abs(second))
-        return self._shaped(np.where(first * second > 0, least, 0.0))
 
     @cached_property
     def outcome(self) -> np.ndarray:
