@@ -106,6 +106,8 @@ def shown(
     """
     before = dict(vars(_progress))
     before.pop("stops", None)
+    if _progress.show is None:  # a failed task, whose error is kept, keeps its part
+        _progress.low, _progress.size = 0.0, 1.0
     _progress.show, _progress.say, _progress.name = show, say, name
     try:
         yield

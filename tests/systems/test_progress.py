@@ -72,6 +72,17 @@ def test_parts_share_the_whole_and_who_works_alone_shows_for_all():
     assert shares == [0.0, 0.25, 0.5, 0.75, 1.0]
 
 
+def test_a_task_that_failed_leaves_no_part_to_the_next():
+    """A notebook keeps the error, and with it loops: the next task began at a tenth of a tenth."""
+    failed = with_progress(range(10))
+    next(failed)
+    shares = []
+    with shown(shares.append):
+        report(lambda: 0.5)
+    failed.close()
+    assert shares == [0.5]
+
+
 def test_idle_lanes_have_no_share_of_the_work():
     """Their run ends at 0, which the share of a time is not divided by."""
     job, clock, ends = np.array([0, 1, -1]), np.array([0.5, 1.0, 0.0]), [2.0, 4.0, 0.0]
