@@ -19,13 +19,7 @@ from squealpipe.structures.contact import (
     transversals,
 )
 from squealpipe.structures.friction import Friction, default_mu, friction_of, has_own_mu
-from squealpipe.structures.matrices import (
-    FEW,
-    checked_mass,
-    real_square,
-    sparse,
-    sum_of_products,
-)
+from squealpipe.structures.matrices import checked_mass, real_square, sum_of_products
 from squealpipe.structures.meshes.faces import Rotation
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
 from squealpipe.structures.speed_terms import SpeedTerms
@@ -348,9 +342,6 @@ class ContactStructure:
         """K + Σ kᵢ nᵢnᵢᵀ without what changes with speed, the symmetric part."""
         springs = sum_of_products(self.normals * self.stiffnesses, self.normals)
         whole = self.given_stiffness + springs + self.speed_terms.still("stiffness")
-        if self.size <= FEW:
-            full = whole.toarray()
-            return sparse(0.5 * (full + full.T))
         return sp.csr_array(0.5 * (whole + whole.T))
 
     def _load(self, load: Any) -> np.ndarray:

@@ -11,9 +11,6 @@ from scipy.sparse.linalg import splu
 from squealpipe.structures.pencil import DENSE
 from squealpipe.systems.inputs.values import brief
 
-FEW = 100
-"""Rows of which an array is made in a tenth of the time of a sparse product."""
-
 
 def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
     """A matrix, dense or sparse, as a sparse one.
@@ -65,19 +62,14 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
 
 def sum_of_products(left: np.ndarray, right: np.ndarray) -> sp.csr_array:
     """Return Σ aᵢ bᵢᵀ of the columns of two arrays, (n, k) each, sparse."""
-    if len(left) <= FEW:
+    few = (
+        100  # rows of which an array is made in a tenth of the time of a sparse product
+    )
+    if len(left) <= few:
         # not by BLAS, whose round-off depends on the processor, and with it which of the modes
         # that have met is which (test_onset, seed 77)
-        return sparse(np.einsum("ik,jk->ij", left, right))
+        return sp.csr_array(np.einsum("ik,jk->ij", left, right))
     return sp.csr_array(sp.csr_array(left) @ sp.csr_array(right).T)
-
-
-def sparse(array: np.ndarray) -> sp.csr_array:
-    """Return an array by rows; scipy takes three times as long for a small one."""
-    there = array != 0
-    ends = np.concatenate([[0], np.cumsum(there.sum(axis=1))]).astype(np.int32)
-    columns = np.nonzero(there)[1].astype(np.int32)
-    return sp.csr_array((array[there], columns, ends), shape=array.shape)
 
 
 def checked_mass(
