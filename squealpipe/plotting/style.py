@@ -355,10 +355,8 @@ def _draw_png(canvas: Any, content: io.BytesIO) -> None:
     canvas.draw()
     opaque = np.asarray(canvas.buffer_rgba())[..., :3]
     height, width, _ = opaque.shape
-    lines = np.zeros(
-        (height, 1 + 3 * width), np.uint8
-    )  # each begins with its filter, 0
-    lines[:, 1:] = opaque.reshape(height, -1)
+    # each line begins with its filter, 0
+    lines = np.pad(opaque.reshape(height, -1), ((0, 0), (1, 0)))
     dots = round(canvas.figure.dpi / 0.0254)  # per metre
     content.write(b"\x89PNG\r\n\x1a\n")
     for name, data in (
