@@ -18,10 +18,13 @@ export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
 export MPLCONFIGDIR := $(CURDIR)/.snakemake/cache/matplotlib
 endif
 
-.PHONY: reproduce test test-release test-long test-processors cost bench env dev lock lint docs dictionary clean
+.PHONY: reproduce help test test-release test-long test-processors cost bench env dev lock lint docs dictionary clean
 
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
+
+help:  ## what can be made
+	@awk -F ':[^#]*## ' '/^[a-z-]+:[^#]*## / { printf "make %-16s %s\n", $$1, $$2 }' Makefile
 
 test: dev  ## the tests of each change, minutes; and what they cost beside an earlier commit
 	$(TESTS) -p tests.cost
@@ -63,7 +66,7 @@ bench: dev  ## speed beside other tools, as ratios; integrators with events besi
 	for script in tests/benchmarks/bench_*.py; do PYTHONPATH=. $(BIN)/python $$script || exit 1; done
 	-$(BIN)/squealpipe benchmark --force -o build/benchmark.nc
 
-lint: dev
+lint: dev  ## style, types and which module may import which
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
 	$(BIN)/mypy && $(BIN)/lint-imports
 
@@ -72,7 +75,7 @@ docs: dev  ## pages and API reference as one site, build/site
 
 env: $(KERNELS)  ## what a study needs
 
-dev: $(DEV) $(KERNELS)  ## and what tests, checks and docs need; make -j2 does both at once
+dev: $(DEV) $(KERNELS)  ## and what tests, checks and docs need; make -j2 dev does both at once
 
 $(STUDY): requirements.lock requirements-pip.lock pyproject.toml
 	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
@@ -103,7 +106,7 @@ $(DEV): requirements-dev.lock $(STUDY)
 COMPILE = $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes \
   --no-emit-index-url --custom-compile-command "make lock" -q
 
-lock: dev
+lock: dev  ## the lock files anew, from what pyproject.toml allows
 	printf 'pip>=25\nsetuptools>=77\n' | $(COMPILE) - -o requirements-pip.lock
 	$(COMPILE) pyproject.toml --extra study -o requirements.lock
 	$(COMPILE) pyproject.toml --extra study --extra dev --extra export --extra fe --extra references --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock

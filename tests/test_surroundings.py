@@ -56,6 +56,13 @@ def test_make_gives_snakemake_a_cache_where_there_is_no_home(tmp_path):
     assert shown.startswith(f"cache={tmp_path}")
 
 
+def test_make_help_tells_every_target():
+    shown = run(["make", "help"], cwd=ROOT).stdout
+    _, targets = (ROOT / "Makefile").read_text("utf-8").split(".PHONY: ")
+    told = {line.split()[1] for line in shown.splitlines()}
+    assert told == set(targets.splitlines()[0].split())
+
+
 @pytest.mark.long
 def test_every_lower_bound_of_the_dependencies_works(tmp_path):
     """Installs the oldest versions that pyproject.toml allows, then runs commands with them."""

@@ -129,7 +129,7 @@ def period_of(motion: PadMotion) -> float:
 
 
 def phases(run: xr.Dataset) -> Figure:
-    """Draw the last period of a motion as a strip of eight phases, for paper.
+    """Draw the last period of a motion's strongest line as a strip of eight phases, for paper.
 
     Args:
         run: dataset ``simulation``, ``assess`` or ``structure_run``.
@@ -144,7 +144,7 @@ def phases(run: xr.Dataset) -> Figure:
 
 
 def draw_phases(panels: list[Axes], run: xr.Dataset) -> str:
-    """Draw the last period of a pad's motion, a phase a panel; return period and scale in words.
+    """Draw the last period of a pad's strongest line, a phase a panel; return it and the scale.
 
     Args:
         run: dataset ``simulation`` or ``assess``.
@@ -158,7 +158,7 @@ def draw_phases(panels: list[Axes], run: xr.Dataset) -> str:
     for index, panel in enumerate(panels):
         PadDrawing(panel, geometry, shown, small=True).show(index)
         panel.set_title(engineering(period * index / count, "s"), fontsize=7)
-    return f"one period of {engineering(period, 's')}; motion drawn {geometry.told}"
+    return f"{_in_words(period)}; motion drawn {geometry.told}"
 
 
 def _draw_phases_of_structure(panels: list[Axes], run: xr.Dataset) -> str:
@@ -169,4 +169,9 @@ def _draw_phases_of_structure(panels: list[Axes], run: xr.Dataset) -> str:
         body = StructureDrawing(panel, motion, frames, small=True)
         body.show(index)
         panel.set_title(engineering(period * index / count, "s"), fontsize=7)
-    return f"one period of {engineering(period, 's')}; vibration drawn {body.told}"
+    return f"{_in_words(period)}; vibration drawn {body.told}"
+
+
+def _in_words(period: float) -> str:
+    # a motion that beats or is irregular has no period of its own
+    return f"one period of its strongest line, {engineering(period, 's')}"

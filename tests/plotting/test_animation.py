@@ -178,6 +178,8 @@ def test_a_strip_has_eight_phases(pad):
     drawn = [axes for axes in figure.axes if axes.texts]
     assert len(drawn) == 8
     assert {axes.texts[-1].get_text() for axes in drawn} >= {"slip", "open"}
+    # whatever repeats, a motion that beats has no period of its own
+    assert figure.get_suptitle().startswith("one period of its strongest line, ")
 
 
 def test_a_run_without_motion_and_wrong_arguments_are_refused(pad):

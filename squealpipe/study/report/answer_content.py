@@ -20,6 +20,7 @@ def answer_content(told: xr.Dataset) -> dict[str, Any]:
         "headline": answer.headline(told),
         "cause": answer.cause(told),
         "level": answer.level(told),
+        "motion": answer.impacts(told),
         "sudden": answer.sudden(told),
         "stops": answer.stops(told),
         "cheapest": [

@@ -142,7 +142,7 @@ def test_report_begins_with_the_answer_and_has_no_paper(
         assert absent not in words
     told = list(answer.lines(answers["mine"]))
     for present in (
-        *told[:3],
+        *told[:5],
         "mine",
         "What changes it",
         "this part",
@@ -291,6 +291,7 @@ def test_what_has_not_settled_has_no_time_by_which_it_had(answers):
     assert shown["numbers"][-1]["pushed"] == "not settled"
     assert shown["numbers"][-1]["sudden"].endswith("s")
     assert shown["level"].startswith("Level at the end")
+    assert "; it does not repeat; " in shown["motion"]
 
 
 def test_a_table_of_friction_stands_for_the_coefficient(tmp_path):

@@ -1,4 +1,4 @@
-"""One period of the settled motion of each scene, as a strip of eight phases."""
+"""One period of the strongest line of each scene's settled motion, as a strip of eight phases."""
 
 from collections.abc import Mapping
 
@@ -16,8 +16,8 @@ from squealpipe.study.figures.declared import report_figure
 @report_figure(
     reads=("assess/*",),
     caption=(
-        "One period of the settled motion of each scene, from left to right. The mass is drawn on "
-        "its springs above the belt, its displacements enlarged. "
+        "The settled motion of each scene over one period of its strongest line, from left to "
+        "right. The mass is drawn on its springs above the belt, its displacements enlarged. "
         f"{COLOURS_IN_WORDS}"
     ),
     alt="For each scene eight drawings of the mass on its springs, an eighth of a period apart.",

@@ -1,4 +1,4 @@
-"""One period of the squealing motion of a structure, as a strip of eight phases."""
+"""One period of the strongest line of a structure's motion, as a strip of eight phases."""
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -12,9 +12,9 @@ from squealpipe.study.figures.declared import report_figure
 def _caption(run: xr.Dataset) -> str:
     """Describe the strip, and how contacts are drawn."""
     told = (
-        "One period of the motion that a small push ends in, the vibration enlarged and without "
-        "the static deformation. Contacts are blue in slip, orange in stick, green where they are "
-        "faster than the belt, and hollow where they are open."
+        "The motion that a small push ends in over one period of its strongest line, the "
+        "vibration enlarged and without the static deformation. Contacts are blue in slip, orange "
+        "in stick, green where they are faster than the belt, and hollow where they are open."
     )
     if mesh_of(run) is None:
         told += " There is no mesh: the contacts stand side by side."
