@@ -14,7 +14,7 @@ from squealpipe.laws.tables import stood_for as stood_for_by_law
 from squealpipe.substitutes import SUBSTITUTES, check_together, stands_for, stood_for
 from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.inputs.values import brief, is_finite_number, numbers_in_si
-from squealpipe.systems.inputs.words import as_number, suggestion
+from squealpipe.systems.inputs.words import as_number, says_what_was_meant, suggestion
 
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
@@ -124,6 +124,7 @@ def _row(default: Any, units: str, symbol: str, meaning: str, **further: Any) ->
     )
 
 
+@says_what_was_meant
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Parameters:
     """Physical parameters of the mass on two inclined springs above a belt.

@@ -16,6 +16,7 @@ import xarray as xr
 import squealpipe
 from squealpipe import (
     Contact,
+    Face,
     Parameters,
     Structure,
     Sweep,
@@ -154,6 +155,23 @@ def test_no_argument_drops_the_unit_of_a_quantity(name, argument):
     for value in (QUANTITY(300.0, "K"), QUANTITY([300.0, 301.0, 302.0], "K")):
         with pytest.raises((ValueError, TypeError), match=argument):
             function(**given | {argument: value})
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: Parameters(belt_spee=2.0), "Parameters: belt_spee: .*'belt_speed'"),
+        (lambda: PAD.with_(belt_spee=2.0), "Parameters: belt_spee: .*'belt_speed'"),
+        (lambda: Structure([[1.0]], [[1.0]], belt_spee=2.0), "Structure: belt_spee: "),
+        (lambda: STRUCTURE.with_(belt_spee=2.0), ".*did you mean 'belt_speed'?"),
+        (lambda: Contact("a", {0: 1}, {1: 1}, stifness=1.0), ".*mean 'stiffness'?"),
+        (lambda: Face("lining", presure=1e5), "Face: presure: .*'pressure'?"),
+        (lambda: System("one", stats={}), "System: stats: .*'states'?"),
+    ],
+)
+def test_an_unknown_argument_is_told_with_the_one_that_was_meant(make, says):
+    with pytest.raises(TypeError, match=says):
+        make()
 
 
 def test_starts_have_the_units_of_their_states():

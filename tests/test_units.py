@@ -202,6 +202,8 @@ def test_functions_take_units():
     [
         ({"t_end": "2 mm"}, "t_end = '2 mm': that is a length; a time is needed, like"),
         ({"t_end": "2,5 ms"}, "t_end = '2,5 ms': write a decimal point: 2.5 ms"),
+        ({"alpha1": "0,4"}, "alpha1 = '0,4': write a decimal point: 0.4"),
+        ({"initial_state": [0, "0,1", 0, 0]}, "write a decimal point: 0.1"),
         ({"t_end": "long"}, "t_end = 'long': numbers are needed, not text"),
         ({"alpha1": "22 mm"}, "that is a length; an angle is needed, like 22 deg"),
         ({"times": ["1 ms", "2 mm"]}, "a length goes to preload or length1 or length2"),

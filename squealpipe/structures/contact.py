@@ -13,6 +13,7 @@ from squealpipe.laws.tables import is_table, scaled
 from squealpipe.parameters import TABLE, finite_number
 from squealpipe.systems.inputs.units import refuse_units
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
+from squealpipe.systems.inputs.words import says_what_was_meant
 from squealpipe.validation import real_array
 
 
@@ -74,6 +75,7 @@ def table_of_contact(law: Any) -> str | None:
     )
 
 
+@says_what_was_meant
 @dataclass(frozen=True, eq=False)
 class Contact:
     """A point, or any combination of degrees of freedom, that is pressed on the belt.

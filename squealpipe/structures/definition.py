@@ -24,6 +24,7 @@ from squealpipe.structures.meshes.faces import Rotation
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
 from squealpipe.structures.speed_terms import SpeedTerms
 from squealpipe.systems.inputs.values import brief, numbers_in_si
+from squealpipe.systems.inputs.words import says_what_was_meant
 from squealpipe.validation import real_array
 
 
@@ -44,6 +45,7 @@ class ReducedFrom(NamedTuple):
     directions: int = 0
 
 
+@says_what_was_meant
 class ContactStructure:
     """M q̈ + C q̇ + K q = f + Σ (nᵢ Nᵢ + tᵢ Tᵢ): an elastic structure with contacts on a belt.
 

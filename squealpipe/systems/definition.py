@@ -33,7 +33,7 @@ from squealpipe.systems.inputs.gate import (
 )
 from squealpipe.systems.inputs.units import holds_units
 from squealpipe.systems.inputs.values import is_finite_number, numbers_in_si
-from squealpipe.systems.inputs.words import suggestion
+from squealpipe.systems.inputs.words import says_what_was_meant, suggestion
 from squealpipe.systems.scales import Scales
 from squealpipe.systems.schema import names_in_results
 from squealpipe.systems.trace import Names, Traced
@@ -66,6 +66,7 @@ class SizeLimits:
     regimes: int = 256
 
 
+@says_what_was_meant
 class Definition:
     """A piecewise-smooth system: regimes, a field, and switches between them.
 

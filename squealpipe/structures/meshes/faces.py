@@ -10,12 +10,14 @@ import numpy as np
 from squealpipe.parameters import TABLE, finite_number
 from squealpipe.structures.contact import table_of_contact
 from squealpipe.systems.inputs.values import brief, is_whole_number
+from squealpipe.systems.inputs.words import says_what_was_meant
 from squealpipe.validation import real_array
 
 THE_BELT = "belt"
 """Word for a rigid belt in place of a surface."""
 
 
+@says_what_was_meant
 @dataclass(frozen=True, eq=False)
 class Face:
     """A surface of a mesh that is pressed on another one, or on a rigid belt, and rubs there.
@@ -122,6 +124,7 @@ def _positive(key: str, value: Any, units: str) -> float:
     return number
 
 
+@says_what_was_meant
 @dataclass(frozen=True, eq=False)
 class Rotation:
     """Rotation of one body of a mesh about an axis.

@@ -111,8 +111,7 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
     """
     what, example = kind_and_example(units)
     tidy = _tidy(text)
-    if match := re.compile(r"([+-]?\d*),(\d+)\s*(\D.*)?", re.ASCII).fullmatch(tidy):
-        raise UnitError(_without_comma(*match.groups("")))
+    _refuse_comma(tidy)
     match = _QUANTITY.fullmatch(tidy)
     # a longer text is a sentence, no quantity; pint would take seconds to refuse it
     if match is None or len(tidy) > 60:
@@ -275,6 +274,10 @@ def holds_units(value: Any) -> bool:
 def refuse_units(value: Any) -> None:
     """Raise if a value that has no declared unit has one."""
     if holds_units(value):
+        for each in value if isinstance(value, list | tuple) else ():
+            refuse_units(each)
+        if isinstance(value, str):
+            _refuse_comma(_tidy(value))
         raise UnitError("a plain number is needed: no unit is declared for it")
 
 
@@ -372,13 +375,17 @@ def engineering(value: float, units: str, digits: int = 3) -> str:
     return f"{number(value * factor, digits)} {name}".rstrip()
 
 
-def _without_comma(head: str, tail: str, unit: str) -> str:
-    """Suggest a number without the comma that was written."""
+def _refuse_comma(tidy: str) -> None:
+    """Raise if a text is a number with a comma, and suggest one without it."""
+    match = re.compile(r"([+-]?\d*),(\d+)\s*(\D.*)?", re.ASCII).fullmatch(tidy)
+    if match is None:
+        return
+    head, tail, unit = match.groups("")
     point = f"{head or 0}.{tail} {unit}".rstrip()
     if len(tail) != 3 or head.lstrip("+-") in {"", "0"}:  # separates no thousands
-        return f"write a decimal point: {point}"
+        raise UnitError(f"write a decimal point: {point}")
     whole = f"{head}{tail} {unit}".rstrip()
-    return (
+    raise UnitError(
         f"the comma is a decimal point or separates thousands; write {point} or {whole}"
     )
 

@@ -1,10 +1,14 @@
 """Words for people: numbers in sentences, labels and tables, and the name that was meant."""
 
 import difflib
+import functools
+import inspect
 import math
 import re
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, TypeVar
+
+Made = TypeVar("Made")
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits and sign of an exponent in plain text."""
@@ -129,3 +133,25 @@ def suggestion(wrong: object, names: Iterable[str]) -> str:
         if near
         else f"choose from {', '.join(every) or 'none'}"
     )
+
+
+def says_what_was_meant(made: type[Made]) -> type[Made]:
+    """Have a class say, where an argument is unknown, which one was meant."""
+    make: Any = made.__init__
+    names = list(inspect.signature(made).parameters)
+
+    @functools.wraps(make)
+    def named(self: Any, *args: Any, **kwargs: Any) -> None:
+        try:
+            make(self, *args, **kwargs)
+        except TypeError as error:
+            unknown = next((name for name in kwargs if name not in names), None)
+            if unknown is None:
+                raise
+            raise TypeError(
+                f"{type(self).__name__}: {unknown}: unexpected keyword argument; "
+                f"{suggestion(unknown, names)}"
+            ) from error
+
+    made.__init__ = named  # type: ignore[method-assign]
+    return made
