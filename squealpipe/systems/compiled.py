@@ -24,9 +24,10 @@ again, and none is ever stale. (heyoka compiles expressions of its own, in
 import gc
 import hashlib
 import os
+import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache, partial
 from pathlib import Path
 from types import FunctionType
@@ -163,7 +164,7 @@ class _CompilerClock(event.Listener):  # type: ignore[misc]
     def on_start(self, event: Any) -> None:  # noqa: ARG002 (numba's signature)
         if self._depth == 0:
             self._since = time.process_time()
-            self._told.enter_context(stage("compiling, once on this machine"))
+            self._told.enter_context(stage(_how_often()))
             self._collects = gc.isenabled()
             gc.disable()
             _Function.get_call_type = _call_type
@@ -223,14 +224,30 @@ def _store() -> str:
 
 def store_folder(kind: str, content: bytes) -> str:
     """NUMBA_CACHE_DIR or the user's cache folder, and in it one for this content."""
-    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
-    root = _settings.CACHE_DIR or f"{user}/squealpipe"
     content += numba.__version__.encode()
-    return f"{root}/{kind}-{hashlib.sha256(content).hexdigest()[:16]}"
+    return f"{_root()}/{kind}-{hashlib.sha256(content).hexdigest()[:16]}"
+
+
+def _root() -> str:
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
+    return _settings.CACHE_DIR or f"{user}/squealpipe"
+
+
+@cache
+def _how_often() -> str:
+    """Say whether what is compiled is kept for later runs; if not, why, and what to do."""
+    variable = "NUMBA_CACHE_DIR" if _settings.CACHE_DIR else "XDG_CACHE_HOME"
+    try:
+        Path(_root()).mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=_root()) as trial:
+            trial.write(bytes(2**20))  # the size of some kernels
+    except OSError as error:
+        return f"compiling at every run ({error.strerror}: {_root()}; set {variable})"
+    return "compiling, once on this machine"
 
 
 def _kept(function: Callable[..., Any], folder: str) -> Any:
-    """The function compiled and stored where the folder can be written; else without a store.
+    """The function compiled and stored where the folder has room; else without a store.
 
     numba stores under the path of a function's file, which differs from checkout to checkout: the
     function is given an empty file of the store in its place.
@@ -243,9 +260,12 @@ def _kept(function: Callable[..., Any], folder: str) -> Any:
         place.parent.mkdir(parents=True, exist_ok=True)
         place.touch()
         code = function.__code__.replace(co_filename=str(place))
-        return compile_(cache=True)(FunctionType(code, function.__globals__))
+        kernel = compile_(cache=True)(FunctionType(code, function.__globals__))
     except (RuntimeError, OSError):
         return compile_(cache=False)(function)
+    else:  # a disk that is full ends no run
+        kernel._cache._guard_against_spurious_io_errors = partial(suppress, OSError)  # noqa: SLF001
+        return kernel
     finally:
         _settings.CACHE_DIR = previous
 

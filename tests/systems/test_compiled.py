@@ -2,6 +2,7 @@
 
 import gc
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -130,6 +131,33 @@ def test_an_edit_of_any_kernel_opens_a_new_store(copy, monkeypatch):
     edited = copy / "squealpipe/brake/orbits/modal_flow.py"
     edited.write_text(edited.read_text("utf-8") + "\n# edited\n", "utf-8")
     assert compiled._store.__wrapped__() != before
+
+
+@pytest.mark.parametrize("variable", ["XDG_CACHE_HOME", "NUMBA_CACHE_DIR"])
+def test_who_waits_for_what_cannot_be_kept_is_told_why(monkeypatch, tmp_path, variable):
+    """At every run it said: once on this machine."""
+    (tmp_path / "file").write_text("", "utf-8")
+    folder = str(tmp_path / "file" / "cache")
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    if variable == "NUMBA_CACHE_DIR":
+        monkeypatch.setattr(numba.config, "CACHE_DIR", folder)
+    monkeypatch.setenv("XDG_CACHE_HOME", folder)
+    told = compiled._how_often.__wrapped__()
+    assert told.startswith(f"compiling at every run (Not a directory: {folder}")
+    assert told.endswith(f"; set {variable})")
+
+
+def test_a_kernel_runs_where_the_store_is_full(monkeypatch, tmp_path):
+    """The command ended with: No space left on device."""
+    monkeypatch.setattr(compiled, "_store", lambda: str(tmp_path))
+    kernel = compiled.compiled(lambda number: 2.0 * number)
+    usual = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (64, usual[1]))
+    try:
+        assert kernel(2.0) == 4.0
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    assert not [*tmp_path.rglob("*.nb?")]
 
 
 @pytest.mark.release
