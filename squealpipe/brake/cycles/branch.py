@@ -40,7 +40,8 @@ from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
 from squealpipe.systems.inputs.values import is_finite_number
-from squealpipe.validation import Angle, Number, Whole, state_of
+from squealpipe.systems.integrate import MOST_STEPS
+from squealpipe.validation import Angle, Natural, Number, Whole, state_of
 
 
 def _start(value: Any) -> Any:
@@ -68,6 +69,7 @@ def cycle_branch(
     start: Start | None = None,
     n_points: Annotated[Whole, Ge(2)] = 200,
     doubled: bool = False,
+    max_steps: Natural = MOST_STEPS,
 ) -> xr.Dataset:
     """Return the branch of cycles through a start in one parameter, stable and unstable parts.
 
@@ -90,6 +92,8 @@ def cycle_branch(
             loss of stability of steady sliding between the two values), or None: a settled run.
         n_points: largest number of points; a branch that goes on ends with ``point_limit``.
         doubled: follow the branch that leaves at the first period doubling instead.
+        max_steps: steps of the integrator in a run to the first cycle, after which ``end`` is
+            ``step_limit``.
 
     Returns:
         Dataset over ``point``, with a variable named like the parameter; ``label`` says what is
@@ -109,7 +113,7 @@ def cycle_branch(
     if isinstance(start, str):
         first = find_onset(design, parameter, begin, to)
     else:
-        cycle, outcome = _first_cycle(design, parameter, start)
+        cycle, outcome = _first_cycle(design, parameter, start, max_steps)
         first = None
         if cycle is not None:
             first = first_point(cycle, IN_SYSTEM[parameter], to)
@@ -155,7 +159,7 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
 
 
 def _first_cycle(
-    design: Design, parameter: str, start: Any
+    design: Design, parameter: str, start: Any, most_steps: int
 ) -> tuple[Cycle | None, Outcome]:
     if isinstance(start, xr.Dataset):
         if start.attrs.get("schema") != a1_limit_cycle_schema.name:
@@ -169,7 +173,7 @@ def _first_cycle(
         }:
             return None, Outcome(int(start.outcome))
         start = np.array([float(start[f"{name}_start"]) for name in STATE])
-    return cycle_from(design, start, varied=[parameter])
+    return cycle_from(design, start, most_steps=most_steps, varied=[parameter])
 
 
 def _dataset(

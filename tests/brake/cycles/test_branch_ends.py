@@ -238,6 +238,14 @@ def test_a_branch_whose_first_cycle_is_too_long_to_settle_says_so():
     assert branch.end == Outcome.step_limit
 
 
+def test_a_branch_takes_the_limit_of_steps_that_its_end_tells_to_raise():
+    stiff = STICKING.with_(k2=1e8)
+    told = {"parameter": "mu", "to": 0.2, "max_steps": 2000}
+    branch = cycle_branch(stiff, *PENDULUM, **told)
+    assert branch.end == Outcome.step_limit
+    assert "raise max_steps" in branch.end.comment
+
+
 @pytest.mark.parametrize(
     ("guess", "outcome"),
     [
