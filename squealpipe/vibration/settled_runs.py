@@ -23,7 +23,13 @@ import numpy as np
 
 from squealpipe.codes import Verdict
 from squealpipe.systems.progress import alone, stop_is_asked
-from squealpipe.vibration.settling import Agreement, Settling, agreement, difference
+from squealpipe.vibration.settling import (
+    ALWAYS,
+    Agreement,
+    Settling,
+    agreement,
+    difference,
+)
 from squealpipe.vibration.verdicts import heard
 from squealpipe.vibration.windows import Windows
 
@@ -312,15 +318,18 @@ def _judged(
     run = SettledRun(
         verdict, now, 0.0, shown is Agreement.irregular, difference(*levels)
     )
+    # what sticks for good is carried along by the belt, ever farther: that is no settled motion
+    carried = bool((now.stuck >= ALWAYS).any())
     if verdict is Verdict.hammers:
-        return run
+        return None if carried else run
     if _lost_in_part(now):
         return None
     faded = Quietness.faded * start.speed
     if start.sliding is None and now.total < faded:
         return replace(run, verdict=Verdict.quiet)
     is_shown = abs(start.rate) * float(now.length) >= Quietness.shown or now.switched
-    return run if is_shown or start.rate == 0.0 else None
+    lasts = is_shown or start.rate == 0.0
+    return run if lasts and not carried else None
 
 
 def _is_unbounded(start: Start, state: np.ndarray) -> bool:
@@ -383,8 +392,8 @@ def _lost_in_part(now: Windows) -> bool:
 
     A single contact of many may stay open in a settled motion.
     """
-    in_part = (now.separated > 0.0) & (now.separated < 1.0)
-    return bool(now.losses or in_part.any() or (now.separated == 1.0).all())
+    in_part = (now.separated > 0.0) & (now.separated < ALWAYS)
+    return bool(now.losses or in_part.any() or (now.separated >= ALWAYS).all())
 
 
 def _dies_out(start: Start, before: Windows, now: Windows) -> bool:

@@ -23,6 +23,9 @@ from typing import Any
 
 import numpy as np
 
+ALWAYS = 1.0 - 1e-9
+"""Share of a window from which on it is the whole one: tapered shares have a round-off."""
+
 
 @dataclass(frozen=True)
 class Settling:

@@ -13,6 +13,7 @@ from squealpipe.structures.schema.squealing import GIVE_DAMPING
 from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.inputs.words import number, off_by, percent
 from squealpipe.vibration.schema import Mechanism, error_of
+from squealpipe.vibration.settling import ALWAYS
 
 NAMES = {
     "mu": "friction coefficient at belt speed",
@@ -135,10 +136,19 @@ def _not_settled(answer: xr.Dataset, prefix: str) -> str:
             "or a frequency_max below."
         )
     after = engineering(value("settled_by"), "s")
-    if not is_structure(answer) and value("separated_fraction") > 1.0 - 1e-9:
+    # of a structure after a sudden start it is not stored whether all contacts are open
+    opened = [value("separated_fraction")]
+    if is_structure(answer):
+        opened = [] if prefix else answer.contact_separated_fraction.values.tolist()
+    if opened and min(opened) >= ALWAYS:
         return (
-            f": the mass has left the belt, and had not come back after {after}; without contact "
-            "there is nothing to judge."
+            f": {_what(answer)} has left the belt, and had not come back after {after}; without "
+            "contact there is nothing to judge."
+        )
+    if value("stick_fraction") >= ALWAYS:
+        return (
+            f": after {after} the belt still carries a sticking contact along, ever farther; "
+            "friction jams, or the belt is very slow."
         )
     told = f": after {after} the motion had not settled"
     if not np.isnan(value("frequency")):

@@ -118,3 +118,26 @@ def test_a_strongest_line_that_wanders_is_told_and_no_shift_of_it():
     # a shim of the brake, in grams
     assert words._value("shim", 0.00938, "kg") == "9.38 g"
     assert "3.9 % below the mode that grows fastest (2.85 kHz)" in words.shift(steady)
+
+
+def test_a_contact_that_sticks_for_good_does_not_squeal():
+    """squealing_modes called it a torus, and a structure that had left the belt squealed, too.
+
+    Beyond mu = 1.32 steady sliding diverges: to one side friction pulls the contact onto the belt.
+    """
+    jams = Structure(
+        np.eye(2),
+        np.array([[1.0, 0.9], [0.9, 1.0]]),
+        modal_damping=0.02,
+        contacts=[Contact("pad", {1: 1.0}, {0: 1.0}, 1.0, 1.0)],
+        mu=1.5,
+        belt_speed=0.5,
+        load=[-2.28, -1.67],
+    )
+    found = squealing_modes(jams, samples=8, workers=1)
+    assert int(found.verdict) == Verdict.undetermined
+    assert not found.sizes["attractor"]
+    told = assess(jams, samples=2, workers=1)
+    assert int(told.verdict) == int(told.sudden_verdict) == Verdict.undetermined
+    assert ": the structure has left the belt, and" in words.headline(told)
+    assert "carries a sticking contact along" in words.headline(told, "sudden_")

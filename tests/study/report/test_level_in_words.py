@@ -34,6 +34,7 @@ def test_a_pad_that_rests_off_the_belt_is_not_said_to_be_still_moving():
             "frequency_error": 0.0,
             "peak_contact_force_over_preload": 0.0,
             "separated_fraction": 1.0,
+            "stick_fraction": 0.0,
         }
     )
     assert headline(answer) == (
