@@ -320,7 +320,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
                 ),
             )
         start_from_zero(t, m, c)
-        special = take_step(t, m, parameters) & busy
+        special = take_step(t, m, c, parameters) & busy
         due = reaches(t.rows, layout.numbers.next_sample) & busy if t.n_samples else 0
         _cut_all(t, m, c, special)
         if t.verify:

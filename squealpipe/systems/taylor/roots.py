@@ -143,25 +143,21 @@ def _leaves(time: float, value: float, slope: float, end: float, side: float) ->
 
 
 @part
-def largest_third(coefficients: Any, variable: int, lane: int, step: float) -> Any:
-    """A bound of the third derivative over the step."""
-    bound = 0.0
+def bounds_of(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """Over the step: a bound of the third derivative, and the size below which round-off hides it.
+
+    Both in one loop, in which neither waits for the other.
+    """
+    bound = size = 0.0
     for k in range(coefficients.shape[1] - 1, 2, -1):
-        bound = bound * step + k * (k - 1.0) * (k - 2.0) * abs(
-            coefficients[variable, k, lane]
-        )
-    return bound
-
-
-@part
-def hidden_below(coefficients: Any, variable: int, lane: int, step: float) -> Any:
-    """The size below which round-off hides a polynomial in its step."""
-    size = 0.0
-    for k in range(coefficients.shape[1] - 1, -1, -1):
+        term = abs(coefficients[variable, k, lane])
+        bound = bound * step + k * (k - 1.0) * (k - 2.0) * term
+        size = size * step + term
+    for k in range(min(coefficients.shape[1] - 1, 2), -1, -1):
         size = size * step + abs(coefficients[variable, k, lane])
     # of a polynomial, over the sum of its terms
     round_off = 1e-15
-    return round_off * size
+    return bound, round_off * size
 
 
 @part
@@ -189,22 +185,21 @@ def first_root(
     step: float,
     start: float = 0.0,
     known: float = 0.0,
-    floor: float = 0.0,
     third: float = 0.0,
+    floor: float = 0.0,
 ) -> Any:
     """The first t in (start, step] where the polynomial changes its sign or touches zero.
 
     A root at the start itself is where the state comes from; it does not count. ``known`` is the
-    sign just after it where round-off hides it; ``floor`` is :func:`hidden_below` and ``third``
-    :func:`largest_third`, if they are known.
+    sign just after it where round-off hides it; ``third`` and ``floor`` are the
+    :func:`bounds_of`, if they are known.
 
     Returns:
         The root, ``no_root`` where there is none or ``undecided`` where nothing can be said, and
         the time up to which the search is complete: a step may end where its sign is hidden.
     """
-    third = third or largest_third(coefficients, variable, lane, step)
     if floor == 0.0:
-        floor = hidden_below(coefficients, variable, lane, step)
+        third, floor = bounds_of(coefficients, variable, lane, step)
     left, right, band, band_side = start, step, start, 0.0
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
     most_intervals = 20_000
@@ -334,18 +329,23 @@ def _bracketed(
 
 @part
 def first_crossing(
-    coefficients: Any, variable: int, lane: int, step: float, watch: Watch, third: float
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    step: float,
+    watch: Watch,
+    third: float,
+    floor: float,
 ) -> Any:
     """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
 
     Returns it and the time up to which the search is complete, as :func:`first_root`. One that
     starts from zero (``fresh``) has the side that it first takes by more than its noise, which
     grows by ``drift`` with time; a side that is the wrong one is a crossing ``at_once``, at 0,
-    unless the switch changes nothing. ``third`` is :func:`largest_third`; 0: it is not known.
+    unless the switch changes nothing. ``third`` and ``floor`` are the :func:`bounds_of`.
     """
     falls, rises, fresh, at_once, noise, drift = watch
     start, side = 0.0, coefficients[variable, 0, lane]
-    floor = hidden_below(coefficients, variable, lane, step)
     hidden = side == 0.0
     if not fresh:  # a step may start where round-off hides the side
         # or leads past a root that the step before did not reach, where it would be beyond
@@ -361,7 +361,7 @@ def first_crossing(
             return 0.0, step
     while side != 0.0:
         root, looked = first_root(
-            coefficients, variable, lane, step, start, side, floor, third
+            coefficients, variable, lane, step, start, side, third, floor
         )
         if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
             return root, looked

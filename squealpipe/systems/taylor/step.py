@@ -18,12 +18,11 @@ from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.lanes import call
 from squealpipe.systems.taylor.roots import (
     Watch,
+    bounds_of,
     evaluate_all,
     evaluate_twice,
     first_crossing,
-    hidden_below,
     is_hidden,
-    largest_third,
     root_search,
 )
 from squealpipe.systems.taylor.simd import (
@@ -31,6 +30,7 @@ from squealpipe.systems.taylor.simd import (
     bits_below,
     choose,
     choose_below,
+    first_bit,
     fma,
     larger,
     load,
@@ -186,23 +186,47 @@ def at_end(series: int, terms: int, step: Any) -> Any:
 
 
 @inline
-def _free(series: int, terms: int, step: Any, lanes: int) -> Any:
-    """Those of some lanes in which a surface has no root in the step.
+def _free(m: Any, c: Any, index: int, surface: int, series: int, step: Any) -> Any:
+    """Those of the lanes that watch a surface in which it has no root in the step.
 
     Where all its terms together are below its start it has none, which is looked at first; how far
     it bends is computed only if that does not tell of all lanes. What round-off may have hidden,
     at the end of this step or of the one before, is looked at.
+
+    One that starts from zero has no other root where its slope outweighs all that follows.
     """
+    terms = c.shape[1]
     change = magnitude(load(series + (terms - 1) * ROW))
     for k in range(terms - 2, 0, -1):
         change = fma(change, step, magnitude(load(series + k * ROW)))
+    fresh = 0 if m.clocks[surface] else m.fresh[surface]
+    if fresh:
+        # the tenth that is left is far more than round-off
+        outweighs = 1.9
+        fresh &= bits_below(change, magnitude(load(series + ROW)) * splat(outweighs))
+        fresh = _leaves(m, c, index, surface, fresh)
     start, change = magnitude(load(series)), change * step
     # relative to the terms: of their sum, and of a surface that is computed anew from the state
     rounding = 1e-14
-    free = bits_below(fma(change, splat(rounding), change), start)
-    if lanes & ~free:
+    free = bits_below(fma(change, splat(rounding), change), start) | fresh
+    if m.active[surface] & ~free:
         free |= _bends_little(series, terms, step, (start + change) * splat(rounding))
     return free
+
+
+@part
+def _leaves(m: Any, c: Any, index: int, surface: int, lanes: int) -> int:
+    """Those of some lanes in which a surface that starts from zero goes to no switch at once."""
+    bits = lanes
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        regime = m.integers[layout.integers.first_regime + m.owner[surface], lane]
+        slope = c[index, 1, lane]
+        which = m.falls[regime, surface] if slope < 0.0 else m.rises[regime, surface]
+        if which >= 0 and m.marks[regime, surface] == 0:
+            lanes ^= 1 << lane
+    return lanes
 
 
 @inline
@@ -232,7 +256,7 @@ def reaches(rows: int, instant: int) -> Any:
 
 
 @inline
-def take_step(t: Any, m: Any, parameters: int) -> Any:
+def take_step(t: Any, m: Any, c: Any, parameters: int) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
     step = smaller(
@@ -280,9 +304,9 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
     plain = bits_below(magnitude(lost), splat(np.inf))
     for surface in range(t.n_surfaces):
         if m.active[surface]:
-            series = base + (t.n_variables + surface) * terms * ROW
-            watching = m.active[surface]
-            free = _free(series, terms, step, watching) & ~m.beyond[surface]
+            index, watching = t.n_variables + surface, m.active[surface]
+            series = base + index * terms * ROW
+            free = _free(m, c, index, surface, series, step) & ~m.beyond[surface]
             # the others are not searched, whatever else ends the step
             m.suspects[surface] = ~free
             plain &= free | ~watching
@@ -302,6 +326,14 @@ def _switch_at(
         return rises
     _, slope, _ = evaluate_twice(c, index, lane, root)
     return falls if slope < 0.0 else rises
+
+
+@part
+def _bounds(t: Any, m: Any, c: Any, lane: int, surface: int, step: float) -> Any:
+    """Bounds of a surface over a step; :func:`_is_finite` has noted those over the whole of it."""
+    if step == m.rows[layout.numbers.step, lane]:
+        return m.scratch[3, surface], m.scratch[3, t.n_surfaces + surface]
+    return bounds_of(c, t.n_variables + surface, lane, step)
 
 
 @part
@@ -332,9 +364,8 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
                 m.noise[surface, 1, lane],
             )
             index = t.n_variables + surface
-            whole = step == m.rows[layout.numbers.step, lane]
-            third = m.scratch[3, surface] if whole else 0.0
-            root, looked = first_crossing(c, index, lane, step, watch, third)
+            third, floor = _bounds(t, m, c, lane, surface, step)
+            root, looked = first_crossing(c, index, lane, step, watch, third, floor)
             unclear |= root == root_search.undecided
             complete = min(complete, looked)
         if root < 0.0 or root > first + tie:
@@ -376,7 +407,7 @@ def _is_hidden(
     soon = 1e-2
     if m.fresh[surface] & (1 << lane) and root <= soon * span:
         span, within = max(span, 0.5 * root / root_search.unsure), min(step, 2.0 * root)
-    floor = hidden_below(c, index, lane, within)
+    _, floor = _bounds(t, m, c, lane, surface, within)
     # a root that this many times the round-off would hide may be hidden by that of its terms
     suspect = 1e6
     if not is_hidden(c, index, lane, span, root, suspect * floor):
@@ -393,17 +424,18 @@ def _is_hidden(
 def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
     """Whether a lane's step is, and the surfaces to be searched, which might be so for ever.
 
-    Puts bounds of their third derivatives into the scratch, which the search needs as well.
+    Puts bounds of their third derivatives, and of their round-off, into the scratch, which the
+    search needs as well.
     """
     total = m.rows[layout.numbers.step, lane]
     for variable in range(t.n_variables):
         total += 0.0 * m.rows[layout.numbers.first_of_system + variable, lane]
     for surface in range(t.n_surfaces):
         if m.active[surface] & m.suspects[surface] & (1 << lane):
-            third = largest_third(
+            third, floor = bounds_of(
                 c, t.n_variables + surface, lane, m.rows[layout.numbers.step, lane]
             )
-            m.scratch[3, surface] = third
+            m.scratch[3, surface], m.scratch[3, t.n_surfaces + surface] = third, floor
             total += 0.0 * third
     return math.isfinite(total)
 
