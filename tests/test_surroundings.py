@@ -30,6 +30,34 @@ def test_a_checkout_path_with_a_space_is_refused_with_the_reason(tmp_path):
     assert not (place / ".venv").exists()
 
 
+@pytest.mark.parametrize(
+    ("settings", "uv_fails", "installed_by"),
+    [
+        ("", False, "uv"),
+        ("", True, "uv pip"),
+        ("global.index-url='https://own.example'", False, "pip"),
+        (":env:.extra-index-url='https://own.example'", False, "uv"),
+    ],
+)
+def test_pip_installs_where_uv_fails_or_pip_has_an_index_of_its_own(
+    tmp_path, settings, uv_fails, installed_by
+):
+    tools = tmp_path / ".venv" / "bin"
+    tools.mkdir(parents=True)
+    scripts = {
+        "uv": f"echo uv >> log; exit {int(uv_fails)}",
+        "python": f'case "$3" in config) echo "{settings}";; *) echo pip >> log;; esac',
+    }
+    for name, script in scripts.items():
+        (tools / name).write_text(f"#!/bin/sh\n{script}\n", "utf-8")
+        (tools / name).chmod(0o755)
+    shutil.copy(ROOT / "Makefile", tmp_path / "Makefile")
+    with (tmp_path / "Makefile").open("a", encoding="utf-8") as file:
+        file.write("\nshow:\n\t@$(call INSTALL,-r some.lock)\n")
+    run(["make", "show"], cwd=tmp_path)
+    assert (tmp_path / "log").read_text("utf-8").split() == installed_by.split()
+
+
 @pytest.mark.release
 def test_commands_need_no_home(tmp_path):
     command = [
