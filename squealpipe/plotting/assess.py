@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from squealpipe.codes import Verdict, flag_words
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined
+from squealpipe.plotting.origin import parameter, slip_along_belt
 from squealpipe.schema import meanings
 from squealpipe.systems.inputs.units import shown_in
 
@@ -35,12 +36,14 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
     x, y = answer.path_x.values, answer.path_y.values
     top = float(np.nanmax(np.abs([x, y])))
     factor, unit = shown_in(top, "m")
-    flags = meanings(answer.path_regime)
-    for value in np.unique(answer.path_regime.values):
+    flags, regimes = meanings(answer.path_regime), answer.path_regime.values
+    if "alpha1" in answer:
+        regimes = slip_along_belt(regimes, parameter(answer, "belt_speed"))
+    for value in np.unique(regimes):
         name = flags[int(value)]
         if name not in style.REGIME_COLOURS:
             continue
-        shown = np.where(joined(answer.path_regime.values == value), y, np.nan)
+        shown = np.where(joined(regimes == value), y, np.nan)
         axes.plot(
             factor * x,
             factor * shown,

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from squealpipe.codes import flag_words
 from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
-from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.origin import parameter, slip_along_belt
 from squealpipe.plotting.quantities import label
 from squealpipe.schema import meanings
 
@@ -51,7 +51,7 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
     y = cycle.y_path.values
     preload = parameter(cycle, "preload")
     if "regime_path" in cycle:
-        draw_regimes(axes, x, y, cycle.regime_path)
+        draw_regimes(axes, x, y, cycle)
     else:
         for part, colour, words in (
             (y > preload, style.Colour.red, "separated"),
@@ -63,14 +63,13 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
 
 
-def draw_regimes(
-    axes: Axes, x: np.ndarray, y: np.ndarray, regimes: xr.DataArray
-) -> None:
-    """A line in the colours of its regimes."""
-    flags = meanings(regimes)
-    for value in np.unique(regimes.values):
+def draw_regimes(axes: Axes, x: np.ndarray, y: np.ndarray, cycle: xr.Dataset) -> None:
+    """A line along a cycle in the colours of its regimes."""
+    flags = meanings(cycle.regime_path)
+    regimes = slip_along_belt(cycle.regime_path.values, parameter(cycle, "belt_speed"))
+    for value in np.unique(regimes):
         name = flags[int(value)]
-        drawn = np.where(joined(regimes.values == value), y, np.nan)
+        drawn = np.where(joined(regimes == value), y, np.nan)
         words = name.replace("_", ", ")
         axes.plot(
             x, drawn, color=style.REGIME_COLOURS[name], linewidth=1.4, label=words

@@ -4,8 +4,10 @@ import json
 import math
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
+from squealpipe.codes import Regime
 from squealpipe.parameters import DEFAULTS, SCENES, TABLE
 from squealpipe.plotting.style import pi_label
 
@@ -22,6 +24,19 @@ def parameter(dataset: xr.Dataset, name: str) -> Any:
         )
     value = (study | parameters)[name]
     return value if isinstance(value, str) else float(value)
+
+
+def slip_along_belt(regimes: np.ndarray, belt_speed: float) -> np.ndarray:
+    """Return regimes of A1 in which slower and faster count along the belt's own motion.
+
+    Datasets count along +x: on a belt that runs along −x a mass at rest has ``slip_faster``.
+    """
+    if belt_speed >= 0.0:
+        return regimes
+    slower, faster = Regime.slip_slower, Regime.slip_faster
+    return np.select(
+        [regimes == slower, regimes == faster], [faster, slower], regimes
+    ).astype(regimes.dtype)
 
 
 def common_friction(modes: xr.Dataset) -> float | None:

@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from squealpipe.codes import Regime
-from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.origin import parameter, slip_along_belt
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,8 @@ class PadMotion:
         time: (n,), s.
         place, velocity: along and across the belt, (n, 2), m and m/s.
         force: contact force over the preload force, (n,).
-        regimes: codes of :class:`squealpipe.codes.Regime`, (n,).
+        regimes: codes of :class:`squealpipe.codes.Regime`, (n,); slower and faster count along the
+            belt's motion.
         angles, lengths: of both springs, rad and m.
         preload: compression of the contact at rest, m.
         belt_speed: m/s.
@@ -75,16 +76,17 @@ class PadMotion:
             if settled
             else np.stack([dataset.vx.values, dataset.vy.values], axis=1)[reached]
         )
+        belt_speed = parameter(dataset, "belt_speed")
         return cls(
             time=time,
             place=place,
             velocity=velocity,
             force=force[reached],
-            regimes=regimes[reached],
+            regimes=slip_along_belt(regimes[reached], belt_speed),
             angles=(float(dataset.alpha1), float(dataset.alpha2)),
             lengths=(parameter(dataset, "length1"), parameter(dataset, "length2")),
             preload=float(dataset.preload),
-            belt_speed=parameter(dataset, "belt_speed"),
+            belt_speed=belt_speed,
             settled=settled,
         )
 

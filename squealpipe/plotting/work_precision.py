@@ -15,7 +15,7 @@ from squealpipe.plotting import style
 
 METHOD_MARKS = [
     (colour, marker, dash)
-    for markers, dash in (("os^vDP*", "-"), ("x+<>dhp", ":"))
+    for markers, dash in (("os^vDP*", "-"), ("dH<>ph8", ":"))
     for colour, marker in zip(
         (
             *(
@@ -30,7 +30,7 @@ METHOD_MARKS = [
         strict=True,
     )
 ]
-"""Mark and colour of each method."""
+"""Mark and colour of each method. Each mark can be hollow; a cross means silently wrong."""
 SMALLEST = 1e-17
 """Errors below are drawn here: they are zero to the reference's last digit."""
 

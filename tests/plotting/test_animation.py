@@ -12,8 +12,10 @@ from scipy.ndimage import binary_erosion, center_of_mass, label
 
 from squealpipe import Parameters, load, simulate
 from squealpipe.cli import run
+from squealpipe.codes import Regime
 from squealpipe.plotting import film, style
 from squealpipe.plotting.animation import film_of, phases
+from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.store import save
 from tests.browser import chromium_path, open_page
 from tests.plotting.test_sound import PAD
@@ -46,6 +48,19 @@ def mass_in(pixels):
     largest = np.bincount(spots.ravel())[1:].argmax() + 1
     row, column = center_of_mass(spots == largest)
     return np.array([column, pixels.shape[0] - 1 - row])
+
+
+def test_a_mirrored_pad_slips_slower_than_its_belt_all_the_same():
+    # x → −x swaps the angles and turns the belt
+    there = PadMotion.read(simulate(PAD, *ANGLES, t_end=0.02))
+    mirrored = simulate(
+        PAD.with_(belt_speed=-PAD.belt_speed), *ANGLES[::-1], t_end=0.02
+    )
+    back = PadMotion.read(mirrored)
+    assert set(there.regimes) >= {Regime.slip_slower, Regime.separated}
+    assert np.mean(there.regimes == back.regimes) > 0.99
+    assert (back.regimes == Regime.slip_slower).any()
+    assert (mirrored.regime == Regime.slip_faster).any()
 
 
 @pytest.mark.parametrize(

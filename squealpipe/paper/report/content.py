@@ -126,10 +126,10 @@ def levels(run: Evidence) -> list[list[str]]:
             if at_level.needed.sel(assumption=name)
         ]
         held = "; ".join(
-            f"{name}: {int(at_level.held.sel(assumption=name).sum())}"
+            f"{name} in {int(at_level.held.sel(assumption=name).sum())}"
             for name in needed
         )
-        written.append([level, *words, f"{held}; of {table.sizes['scene']}"])
+        written.append([level, *words, f"{held} of {table.sizes['scene']}"])
     return written
 
 

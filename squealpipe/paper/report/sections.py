@@ -31,7 +31,7 @@ COMPARED = {
         "Figs. 8 and 9: natural frequencies", ("fig08", "fig09", "frequency_shift")
     ),
     "fig10": ReportSection(
-        "Figs. 10–12: three alike frequency responses", ("fig10_to_12",)
+        "Figs. 10–12: three similar frequency responses", ("fig10_to_12",)
     ),
     "fig13": ReportSection("Fig. 13: modes switched", ("fig13",)),
 }

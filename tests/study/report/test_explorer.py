@@ -264,7 +264,7 @@ class TestInBrowser:
 
     def test_scenes_open_the_pair_that_they_name(self, opened):
         names = opened.locator("#scenes button").all_inner_texts()
-        assert "Fig 2: 5π/6, 5π/6" in names
+        assert "Fig. 2(d): 5π/6, 5π/6" in names
         assert names[-1].startswith("mine: ")
         for place, name in enumerate(names):
             opened.locator("#scenes button").nth(place).click()
@@ -346,7 +346,7 @@ def own_page(tmp_path_factory):
 def test_a_study_without_the_paper_has_its_own_scenes_and_no_backbones(own_page):
     text = own_page.read_text()
     words = re.sub(r"<(script|style).*?</\1>", "", text, flags=re.DOTALL)
-    for absent in ("Fig ", "paper", "Backbones"):
+    for absent in ("Fig", "paper", "Backbones"):
         assert absent not in words
     shown = json.loads(text.partition('id="payload">')[2].partition("</script>")[0])
     assert [scene["name"] for scene in shown["scenes"]] == ["mine", "other"]

@@ -62,11 +62,11 @@ def hammering_occurs(run: Evidence) -> Finding:
     return finding(
         (force, "≥", impulse),
         f"At (0.83π, 0.83π) the mass returns to the belt {returns} times, at up to {speed:.3g} "
-        f"l_pre √(k1/m), and is pressed by up to {force:.3g} of the load k3 l_pre from which it "
-        f"starts; from {impulse:g} of it a return counts as an impulse. Over all angles it returns "
-        f"in {100 * strikes.mean():.3g} % of {strikes.size} cells, with a larger force than that "
-        f"at the start in {int((forces > above).sum())}, "
-        f"{forces.max(initial=0.0):.3g} of it at most.",
+        f"l_pre √(k1/m), and is pressed by up to {force:.3g} times the load k3 l_pre from which it "
+        f"starts; from {impulse:g} times on a return counts as an impulse. Over all angles it "
+        f"returns in {100 * strikes.mean():.3g} % of {strikes.size} cells, with a larger force "
+        f"than that at the start in {int((forces > above).sum())}, "
+        f"{forces.max(initial=0.0):.3g} times it at most.",
         also=returns >= 2,
     )
 

@@ -56,7 +56,8 @@ def printed_residual_converges_right(run: Evidence) -> Finding:
     scaled = run.parameters.time_unit * forms.omega.sel(form=Form.as_printed)
     exact = run.parameters.time_unit * forms.omega_exact
     pairs = ", ".join(
-        f"{a:.4f} for {b:.4f}" for a, b in zip(scaled.values, exact.values, strict=True)
+        f"{a:.4f} instead of {b:.4f}"
+        for a, b in zip(scaled.values, exact.values, strict=True)
     )
     # a relative error of ω that truncation and smoothing do not explain
     return finding(
@@ -202,10 +203,9 @@ def black_region_is_there(run: Evidence) -> Finding:
     )
     evidence = (
         f"Of the {int(unstable.sum())} cells that A3 calls unstable {black} keep contact in their "
-        f"runs (the text's reading). Of the {int(kept.sum())} that keep it |x| grows as fast as "
-        f"time or faster, "
-        f"{WordsInNumbers.growth_threshold:g} times from the first half of the run to the second, "
-        f"in {growing} (the caption's reading)."
+        f"runs (the text's reading). Of the {int(kept.sum())} cells that keep it, |x| grows in "
+        f"{growing} as fast as time or faster: it is {WordsInNumbers.growth_threshold:g} times as "
+        f"large in the second half of the run as in the first (the caption's reading)."
     )
     if "validity_boundary" in run:
         within = int((unstable.values & run["validity_boundary"].kept.values).sum())

@@ -15,7 +15,7 @@ from squealpipe.study.figures.declared import report_figure
         "The limit cycle of the scene of Fig. 3 with dashpots, at the study's friction, if there "
         "is one. (a) Path of the mass; the line is l_pre, above which contact is lost. (b) "
         "Velocity along the belt over one period; the dashed line is belt speed. Colours: the "
-        "regime."
+        "regime, slower or faster than the belt."
     ),
     alt="Left, the path of the cycle, to scale; right, its velocity; both coloured by regime.",
 )
@@ -27,8 +27,8 @@ def draw(cycle: xr.Dataset) -> Figure:
         for panel in (path, rate):
             style.say_instead(panel, "no cycle")
     else:
-        draw_regimes(path, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
-        draw_regimes(rate, cycle.time.values, cycle.vx_path.values, cycle.regime_path)
+        draw_regimes(path, cycle.x_path.values, cycle.y_path.values, cycle)
+        draw_regimes(rate, cycle.time.values, cycle.vx_path.values, cycle)
         height, speed = parameter(cycle, "preload"), parameter(cycle, "belt_speed")
         path.axhline(
             height,

@@ -15,8 +15,8 @@ from squealpipe.study.figures.declared import report_figure
     reads=("simulate/F4",),
     caption=(
         "Orbit of model A1, started at rest at α₁ = 0.2π, α₂ = 0.8π, coloured by time, with both "
-        "springs drawn at the start (grey) and at the end of the run. Dotted: l_pre, above which "
-        "contact is lost."
+        "springs drawn at the start (grey) and at the end of the run; triangle: their fixed ends. "
+        "Dotted: l_pre, above which contact is lost."
     ),
     alt="Path of the mass in the x–y plane, coloured by time, with the springs at two instants.",
 )

@@ -16,7 +16,8 @@ from squealpipe.study.figures.declared import report_figure
         "The paper's statements in settings that it leaves out, by the criteria of the inference. "
         "Blue: the statement holds; red: it fails; numbers: share in % of random starts, or of the "
         "feasible parameters, in which it holds, with half its 95 % interval; grey: not judged. "
-        "R is the reaction force. With dashpots, or friction that depends on speed, coupled modes "
+        "R is the reaction force, v₀ the speed over which friction falls. With dashpots, or "
+        "friction that depends on speed, coupled modes "
         f"and unstable cells are looked for on a grid of {DAMPED_GRID} × {DAMPED_GRID} angles; ω₁ "
         "is without damping."
     ),

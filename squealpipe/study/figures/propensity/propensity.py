@@ -14,8 +14,8 @@ from squealpipe.study.figures.declared import report_figure
         "which each occurs, with its 95 % interval. (b) The share from growing parts of the "
         "sample. (c) Total Sobol indices with 95 % intervals, dots: first order; a quantity for "
         "which the sample does not support an index is left out. (d) Half-width of the widest "
-        "total index from growing parts of the base sample; only below the dashed line an index is "
-        "given. Colours as in (a)."
+        "total index from growing parts of the base sample; an index is given only below the "
+        "dashed line. Colours as in (a)."
     ),
     alt=(
         "Bars of shares, lines of shares over sample size, and bars of sensitivity indices."

@@ -31,12 +31,9 @@ def write_explorer(
 ) -> None:
     """Write the page, whole or not at all."""
     papers = {
-        f"Fig {scene.figure}": {
-            "alpha1": scene.alpha1,
-            "alpha2": scene.alpha2,
-            "near": 0.03,
-        }
-        for scene in SCENES.values()
+        scene.panel: {"alpha1": scene.alpha1, "alpha2": scene.alpha2, "near": 0.03}
+        # one of each figure
+        for scene in {each.figure: each for each in SCENES.values()}.values()
         if paper and scene.figure <= 5
     }
     with whole_file(Path(path)) as temporary:
