@@ -58,7 +58,7 @@ class Verdict(IntEnum):
 
     @property
     def opening(self) -> str:
-        """The same at the beginning of a sentence."""
+        """Words of the verdict with a capital, to begin a sentence."""
         return self.words.capitalize()
 
 

@@ -90,7 +90,7 @@ def run_shared(
 
 
 def leave_interrupts_to_the_parent() -> None:
-    """In a worker process: Ctrl-C reaches the whole group, and the parent ends its workers.
+    """Let a worker ignore Ctrl-C, which reaches the whole group; the parent ends its workers.
 
     If the parent is killed, the worker ends with it, where the system (Linux) can tell it.
     """

@@ -60,7 +60,9 @@ def repeats_after(
 def crossings(
     times: np.ndarray, path: np.ndarray, state: np.ndarray, normal: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """When and where a sampled motion crosses a plane through a state forwards, by straight lines.
+    """Find when and where a sampled motion crosses a plane through a state forwards.
+
+    Between samples the motion is taken as straight.
 
     Args:
         path: states at the times, (times, n).

@@ -362,7 +362,7 @@ class _Laws:
                 )
 
     def starts(self, free: Any, rises: Any, limit: Any, pull: Any) -> list[Any]:
-        """In which regime a run starts: the first whose surfaces are all ≥ 0.
+        """Return the regimes in which a run may start; the first whose surfaces are all ≥ 0 counts.
 
         Where the contact spring is just free the velocity decides, then the force. At belt speed it
         is stick where friction can hold, or slip to the side that the springs pull to, below belt

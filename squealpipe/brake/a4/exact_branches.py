@@ -44,7 +44,7 @@ def exact_branch(
 def places_on_exact_branch(
     scene: ScaledSystem, mode: int, y_max: float, x_max: float
 ) -> tuple[list[Place], Outcome]:
-    """What :func:`exact_branch` finds, but orbits as functions, for those that are wanted."""
+    """Return the branch of :func:`exact_branch` with orbits as functions, computed when wanted."""
     orbits, _, end = linear_part(scene, mode, y_max, x_max)
     beyond = list[Place]()
     if end is None and scene.system.decoupled:

@@ -131,7 +131,7 @@ class Sliding:
 
     @cached_property
     def margin(self) -> float:
-        """By how much small motions grow faster than round-off, 1/s."""
+        """Growth rate of small motions beyond that of round-off, 1/s."""
         return excess_growth(self.jacobian)
 
     @cached_property
@@ -327,7 +327,7 @@ def _jacobian(design: Design, place: Any, acceleration: Any) -> np.ndarray:
 
 
 def excess_growth(jacobian: np.ndarray) -> float:
-    """By how much small motions grow faster than round-off, 1/s.
+    """Return the growth rate of small motions beyond that of round-off, 1/s.
 
     Where no force depends on velocity, frequencies that merge lose half of their digits; elsewhere
     the sign of growth tells, however slow it is.

@@ -160,7 +160,7 @@ class Square:
         return p.preload * (np.sqrt(p.k3 / p.mass) + by_friction)
 
     def touch_time(self, places: Vector, slope: Vector) -> Vector:
-        """When contact is lost next to the boundary, over √(m/k1)."""
+        """Return the time at which contact is lost next to the boundary, over √(m/k1)."""
         size = np.linalg.norm(slope, axis=1)
         # where the reserve jumps, as next to a pivot, it may have no slope on either side
         beside = places - LOST_SIDE * slope / np.where(size > 0.0, size, 1.0)[:, None]

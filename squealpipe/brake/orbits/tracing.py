@@ -124,7 +124,7 @@ def places_on_branch(
     settings: TraceSettings,
     spacing: float,
 ) -> tuple[list[Place], TraceEnd]:
-    """What :func:`trace_branch` returns, but orbits as functions, for those that are wanted."""
+    """Return the branch of :func:`trace_branch` with orbits as functions, computed when wanted."""
     trace, places = _Trace(system, settings, y_stop), list[Place]()
     for line, share in trace.steps(start, direction):
         places += trace.places(line, share, spacing)

@@ -69,7 +69,7 @@ class BranchCase(NamedTuple):
 
     @property
     def angles(self) -> tuple[float, float]:
-        """In rad."""
+        """Both spring angles, rad."""
         return self.alpha1_over_pi * math.pi, self.alpha2_over_pi * math.pi
 
 

@@ -25,7 +25,7 @@ from squealpipe.schema import Outcome
 
 @dataclass(frozen=True)
 class StatementMargin:
-    """By how much one statement holds, and how the runs behind that ended, both (size,)."""
+    """Margin by which one statement holds, and how the runs behind it ended, both (size,)."""
 
     margin: np.ndarray
     outcome: np.ndarray

@@ -29,7 +29,7 @@ class Basis(IntEnum):
 
 
 class Origin(IntEnum):
-    """Whose statement a row is."""
+    """Author of a row's statement: the paper, or our list of its misprints."""
 
     paper = 0
     misprints = 1

@@ -1,4 +1,4 @@
-"""How far the statements of the paper carry in settings that it leaves out."""
+"""Reach of the paper's statements in settings that it leaves out."""
 
 from squealpipe.schema import DatasetSchema, Outcome, count, or_nan, outcome, text
 

@@ -282,7 +282,7 @@ class Cycle:
 
     @cached_property
     def step_begins(self) -> Vector:
-        """When each step of the integrator begins after the first state."""
+        """Times at which the steps of the integrator begin, from the first state on."""
         path = self.parts.path
         return np.asarray(self.clocks[path.leg] + path.offsets * path.unit)
 
@@ -291,7 +291,7 @@ class Cycle:
 
     @property
     def clocks(self) -> Vector:
-        """When each leg begins after the first state."""
+        """Times at which the legs begin, from the first state on."""
         durations = self.parts.durations
         return np.asarray(np.cumsum(durations) - durations)
 
@@ -312,7 +312,7 @@ class Cycle:
 
     @cached_property
     def phase(self) -> float:
-        """When that is, after the first state."""
+        """Time of the cycle's start (t = 0 of the forcing) after the first state."""
         if self.map.periods:
             return -self.parts.start % self.period
         joint = self.map.flow.system.joint

@@ -14,7 +14,7 @@ from squealpipe.systems.system import System
 
 
 def _approach(side: float, s: Any, p: Any) -> Any:
-    """By how much a flank is pressed."""
+    """Return the depth to which a flank is pressed."""
     return side * s.x - p.gap
 
 

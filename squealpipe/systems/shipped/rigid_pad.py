@@ -22,7 +22,7 @@ def edge(side: float, s: Any, p: Any) -> tuple[Any, Any]:
 
 
 def approach(side: float, s: Any, p: Any) -> Any:
-    """By how much an edge's contact spring is shortened, m."""
+    """Return the compression of an edge's contact spring, m."""
     return p.preload - s.y - edge(side, s, p)[1] - p.depth
 
 
