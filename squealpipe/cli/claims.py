@@ -24,7 +24,7 @@ def claims(
 
     Args:
         ids: statements to show in full.
-        only: a verdict: holds, fails, depends … or holds only …; its first letters are enough.
+        only: a verdict, by its first letters: holds, fails, holds only, depends or cannot.
         json_: print a JSON list of objects.
         file: dataset of verdicts, made by `squealpipe run`.
     """
