@@ -48,7 +48,7 @@ def substitutes(benchmark: xr.Dataset) -> list[str]:
     caption=(
         "How often an integrator is silently wrong: wrong answers that nothing was said of, over "
         "all answers at tolerances from 10⁻⁶ to 10⁻¹², by what makes a problem hard. White: all "
-        "right; light blue: some wrong or without an answer, and said so; the darker the red, the "
+        "right; bluish: some wrong or without an answer, and said so; the darker the red, the "
         "more are silently wrong; a dash: cannot be asked. Problems without "
         "an answer are left out. Ours is in bold."
     ),
