@@ -205,7 +205,47 @@ def test_nothing_of_a_transient_is_left_in_the_largest_force_of_a_cycle():
     apart.run(0.27)
     peaks = apart.run(0.03, 1e-5)["peak"]
     force = 7e6 * 5.714e-4
-    assert float(at_end.peak_force[0]) == pytest.approx(peaks[0] / force, rel=2e-4)
+    assert float(at_end.peak_force[0]) == pytest.approx(peaks[0] / force, rel=1e-6)
+
+
+def test_a_cycle_that_is_neared_slowly_is_no_torus():
+    """What is left of the way there made it one, with a force that was 1.5 % too large.
+
+    The force that a run of 3,000 periods comes to was found by time stepping with matrix
+    exponentials.
+    """
+    contacts = [
+        Contact(
+            "one",
+            [0.601, -0.26, 0.351, 0.395, -0.153],
+            [-0.368, -0.317, 0.096, -0.844, -0.217],
+            stiffness=347.7,
+            preload=2.554,
+            speed=1.344,
+        ),
+        Contact(
+            "two",
+            [0.619, -0.355, 0.091, 0.583, 0.152],
+            [-0.605, -0.173, -0.517, 0.054, -0.129],
+            stiffness=127.7,
+            preload=1.722,
+            mu=0.3803,
+            mu_static=0.4735,
+        ),
+    ]
+    structure = Structure(
+        np.eye(5),
+        np.diag([38.84, 91.41, 131.1, 281.7, 371.8]),
+        modal_damping=0.001265,
+        contacts=contacts,
+        mu=0.8645,
+        belt_speed=0.9902,
+    )
+    answer = squealing_modes(structure, samples=1, workers=1)
+    pushed = answer.isel(attractor=int(answer.ends_in[0]))
+    assert Kind(int(pushed.kind)) is Kind.cycle
+    forces = [10.97841187, 5.52485778]
+    assert pushed.peak_normal_force.values == pytest.approx(forces, rel=1e-7)
 
 
 @pytest.mark.release

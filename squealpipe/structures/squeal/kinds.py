@@ -1,8 +1,9 @@
 """The kind of a settled motion, and its spectrum: from one run, and others that start beside it.
 
 Beside the motion start some that are off by 1e-8 of it, each in a direction of its own. Where they
-run away from it exponentially it is irregular. Where they do not, and it repeats, the exact map
-closes it to a cycle, whose multipliers decide. What neither repeats nor runs away is a torus.
+run away from it exponentially it is irregular. Where they do not, and it repeats or nears one that
+does, the exact map closes it to a cycle, whose multipliers decide and whose statistics are those of
+the motion. What neither repeats nor runs away is a torus.
 """
 
 from collections.abc import Sequence
@@ -59,6 +60,14 @@ class KindRules:
     """Largest difference of intervals between events, over their mean, of a motion that repeats."""
     nearly_repeated: float = 1e-3
     """Largest such difference of a motion whose cycle is worth a search."""
+    slowly_neared: float = 1e-2
+    """The same where neighbours draw nearer: what is left of the way to a cycle. A tenth: that
+    cycle is taken for a torus. Ten times as much: tori are searched for cycles, for minutes."""
+    cycle_periods: int = 31
+    """Periods of a cycle that are run for its statistics."""
+    cycle_samples: int = 2048
+    """Samples of them; with no factor in common with their number, all are at phases of their own.
+    Half as many: the largest speed is off by four times as much, 3e-6."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +85,9 @@ class Described:
             quarter of the run.
         leaves: whether the motion is about to leave what repels it: neighbours run away, but the
             run is too short for that to grow from round-off.
-        window: statistics of a run that begins where the motion has settled, so that nothing of
-            what it settled from is in them; None where it has died out.
+        window: statistics of whole periods of the cycle; else of a run that begins where the motion
+            has settled, so that nothing of what it settled from is in them; None where it has died
+            out.
     """
 
     kind: Kind
@@ -122,7 +132,7 @@ def described(
         apart = _apart(plant, [*raw["samples"], *others], times, beside.extent)
         lost = apart.grown >= KindRules.exponential_growth
     modal = plant.modal_velocities(raw["samples"][0])
-    step = float(times[0])
+    step, resolution = float(times[0]), 1.0 / length
     omega, amplitude = amplitude_spectrum(modal.T, step)
     power = np.sqrt((amplitude**2).sum(axis=0))
     frequency = strongest_line(modal.T, step)
@@ -133,11 +143,13 @@ def described(
         kind = Kind.irregular
         leaves = apart.exponent * float(settled.last.length) < rules.irregular
     elif not stopped:
-        # on a torus near returns are many, and closing each takes minutes
-        if _repeats(raw, length, KindRules.nearly_repeated):
+        # on a torus near returns are many, and closing each takes minutes; there the area that
+        # neighbours span does not shrink for long, as it does where a cycle is neared slowly
+        if _repeats(raw, length, _within(late)):
             cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
             kind, leaves = Kind.cycle, False
+            raw, length = _whole_periods(plant, cycle, how)
         elif apart.grown <= KindRules.linear_growth and not _repeats(
             raw, length, KindRules.repeated_intervals
         ):
@@ -146,7 +158,6 @@ def described(
     lines = omega / (2.0 * np.pi)
     if leaves:
         kind = Kind.undetermined
-    resolution = 1.0 / length
     return Described(
         kind,
         frequency,
@@ -159,6 +170,25 @@ def described(
         leaves,
         window,
     )
+
+
+def _within(late_growth: float) -> float:
+    """Return the difference of intervals up to which a cycle is searched for."""
+    if late_growth < -settling_of_numbers.still_grows:
+        return KindRules.slowly_neared
+    return KindRules.nearly_repeated
+
+
+def _whole_periods(
+    plant: Plant, cycle: Cycle, how: Running
+) -> tuple[dict[str, np.ndarray], float]:
+    """Run whole periods of a cycle from a state on it; return raw results and their length, s."""
+    state, number = cycle.start()
+    regimes = np.atleast_2d(cycle.map.flow.system.joint.regimes(number))
+    length = KindRules.cycle_periods * cycle.period
+    count = KindRules.cycle_samples
+    times = length * np.append((np.arange(count) + 0.5) / count, 1.0)
+    return run(plant, state[None], times, how, regime=regimes), length
 
 
 def is_irregular(plant: Plant, settled: SettledRun, how: Running) -> bool:
