@@ -74,7 +74,6 @@ gc.set_threshold(200_000)
 
 def pytest_collection_finish():
     """What is loaded by now stays."""
-    gc.collect()
     gc.freeze()
 
 
@@ -156,13 +155,28 @@ def real_pictures(quick_pictures, monkeypatch):
 
 @pytest.fixture(autouse=True, scope="session")
 def options_read_once():
-    """Help of options that commands share is read from their source once, not by each command."""
+    """Help and groups of options are read from their source once, not by each command."""
     with pytest.MonkeyPatch.context() as patch:
         from cyclopts.argument import _collection
 
-        read = functools.cache(_collection.extract_docstring_help)
-        patch.setattr(_collection, "extract_docstring_help", read)
+        for name in ("extract_docstring_help", "_resolve_groups_from_callable"):
+            read = functools.cache(getattr(_collection, name))
+            patch.setattr(_collection, name, read)
         yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def one_process():
+    """What asks for no number of processes runs in that of the tests, which fill all cores.
+
+    A fork of a process as large takes 30 ms. Tests of ensembles and of processes ask for theirs.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        from squealpipe.systems import processes
+
+        by_cores = processes.workers_for
+        patch.setattr(processes, "workers_for", lambda _: 1)
+        yield by_cores
 
 
 def _touch(_, paths, **__):

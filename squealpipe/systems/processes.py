@@ -36,6 +36,13 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
+def workers_for(jobs: int) -> int:
+    """Processes for so many jobs, where none are asked for."""
+    # with fewer jobs a process a fork costs more than it saves
+    minimum_jobs = 64
+    return max(1, min(available_cores(), jobs // minimum_jobs))
+
+
 def run_shared(
     work: Work,
     shapes: Mapping[str, tuple[tuple[int, ...], Any]],
@@ -50,9 +57,7 @@ def run_shared(
         workers: processes; None takes all cores, at most one for every 64 jobs.
     """
     if workers is None:
-        # with fewer jobs a process a fork costs more than it saves
-        minimum_jobs = 64
-        workers = max(1, min(available_cores(), jobs // minimum_jobs))
+        workers = workers_for(jobs)
     workers = min(workers, max(1, jobs))
     daemon = multiprocessing.current_process().daemon
     if workers == 1 or daemon or "fork" not in multiprocessing.get_all_start_methods():

@@ -6,6 +6,7 @@ import os
 import numpy as np
 import pytest
 
+from squealpipe.systems import processes
 from squealpipe.systems.processes import available_cores, run_shared
 
 
@@ -20,7 +21,10 @@ SHAPES = {"out": ((1000,), np.float64)}
 @pytest.mark.parametrize(
     ("jobs", "workers"), [*((1000, n) for n in (1, 2, 3, 7, None)), (2, 5), (0, None)]
 )
-def test_every_job_is_done_once_for_any_number_of_workers(jobs, workers):
+def test_every_job_is_done_once_for_any_number_of_workers(
+    jobs, workers, one_process, monkeypatch
+):
+    monkeypatch.setattr(processes, "workers_for", one_process)
     out = run_shared(
         _squares, {"out": ((jobs,), np.float64)}, jobs=jobs, workers=workers
     )["out"]
