@@ -67,6 +67,7 @@ def report_figure(
     return register
 
 
+@cache
 def find_module(name: str) -> Path:
     """Return the path of a figure's module.
 
