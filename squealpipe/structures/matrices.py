@@ -19,10 +19,10 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
         ValueError: it is no matrix, not square, of another size, complex or not finite.
     """
     if sp.issparse(given):
-        # entries at one place are added up as floats: of bytes 100 + 100 would be -56
-        wide = complex if given.dtype.kind == "c" else float
-        matrix = sp.csr_array(given.astype(wide), copy=True)
+        array = given
     else:
+        if np.ma.is_masked(given):
+            raise ValueError(f"{name}: masked entries: fill them or leave them out")
         try:
             array = np.asarray(given)
         except ValueError:
@@ -31,7 +31,10 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
             raise ValueError(
                 f"{name} = {brief(given)}: a matrix is needed, dense or of scipy.sparse"
             )
-        matrix = sp.csr_array(array)
+    # entries at one place are added up as floats: of bytes 100 + 100 would be -56; and scipy has no
+    # sparse matrices of another byte order, as in files of other machines, or of half precision
+    wide = complex if array.dtype.kind == "c" else float
+    matrix = sp.csr_array(array.astype(wide), copy=True)
     rows, columns = matrix.shape
     if rows != columns or not rows:
         raise ValueError(f"{name} is {rows} × {columns}: a square matrix is needed")

@@ -34,6 +34,26 @@ def with_fixed(penalty, **further):
     return Structure(np.eye(3), stiffness, contacts=[CONTACT], mu=1.0, **further)
 
 
+@pytest.mark.parametrize("kind", [">f8", ">f4", "<f2", ">i8"])
+def test_numbers_of_other_machines_and_of_half_precision_are_the_same_matrix(kind):
+    """scipy has no sparse matrix of them."""
+    numbers = np.array([[4.0, -1.0], [-1.0, 2.0]])
+    plain, other = (
+        Structure(each, 8 * each, 2 * each, contacts=[CONTACT])
+        for each in (numbers, numbers.astype(kind))
+    )
+    for name in ("mass", "given_stiffness", "given_damping"):
+        one, same = getattr(plain, name), getattr(other, name)
+        np.testing.assert_array_equal(one.toarray(), same.toarray())
+
+
+def test_a_matrix_with_masked_entries_is_refused():
+    """What lies below a mask was taken for the entry."""
+    hidden = np.ma.masked_array(SMALL, [[False, True], [True, False]])
+    with pytest.raises(ValueError, match=r"^stiffness: masked entries: fill them"):
+        Structure(np.eye(2), hidden, contacts=[CONTACT])
+
+
 @pytest.mark.parametrize("penalty", [1e12, 1e16, 1e20, 1e36])
 @pytest.mark.parametrize("damping", [0.0, 3e-3])
 def test_a_penalty_fixes_a_degree_of_freedom_and_changes_nothing_else(penalty, damping):
