@@ -144,7 +144,7 @@ class LinearBatch(Batch):
     def _parameters(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
         system: Any = self.system
         refuse_weak_stick(system.matrices, system.coefficients, values)
-        self.plan = plan(system.matrices, system.integrated)
+        self.plan = plan(system.matrices, system.integrated, functions())
         address = self.plan.pointer.value or 0
         return numbers_of_runs(
             system.matrices, system.coefficients, values, self.unit, address
@@ -197,8 +197,7 @@ def first_regimes(
     unit = np.ones(len(states))
     given = numbers_of_runs(matrices, coefficients, values, unit, 0)
     starts = np.hstack([given, states])
-    settle = functions()["settle"]
-    table = plan(matrices, numbering, starts, numbers, settle)
+    table = plan(matrices, numbering, functions(), starts, numbers)
     address = table.pointer.value or 0
     table.arrays["starts"][:, 0] = np.array([address], np.int64).view(float)[0]
     invoke(functions()["starts"], address)

@@ -27,6 +27,7 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.linear.batch import coefficients_of_contacts, numbers_of_runs
 from squealpipe.systems.linear.legs import RUN_SIZES, RUN_TABLE, run_legs
+from squealpipe.systems.linear.loop import functions
 from squealpipe.systems.linear.matrices import (
     FIRST_OF_PRESS,
     ContactMatrices,
@@ -39,6 +40,7 @@ from squealpipe.systems.linear.plan import plan
 from squealpipe.systems.linear.sticking import DEPENDENT, limit_left
 from squealpipe.systems.scales import Scales
 from squealpipe.systems.taylor.lanes import Workspace, invoke, taylor_terms
+from squealpipe.systems.taylor.simd import LANES
 
 TINY = 1e-40
 """Imaginary part by which derivatives are taken: its square is nothing beside any number."""
@@ -555,7 +557,8 @@ class LinearFlow(Flow):
         """Run legs from states (legs, n), each in its regime for its duration."""
         matrices = self.matrices.at(values["belt_speed"])
         numbering, n = self.numbering, self.size
-        table, unit = plan(matrices, numbering), self.unit(values)
+        called, unit = functions(), self.unit(values)
+        table = plan(matrices, numbering, called)
         runs = {name: np.array([values[name]]) for name in self.system.parameters}
         given = numbers_of_runs(
             matrices,
@@ -578,7 +581,7 @@ class LinearFlow(Flow):
         ] = 1
         counts = np.zeros(len(states), np.int64)
         arrays = {
-            "rows": np.concatenate([given, constants[0]])[:, None].copy(),
+            "rows": np.zeros((len(given) + len(constants[0]), LANES)),
             "series": np.zeros((terms, n_series)),
             "units": 1.0 / sizes[:, None],
             "constants": np.ascontiguousarray(constants),
@@ -587,6 +590,7 @@ class LinearFlow(Flow):
             "active": active,
             "counts": counts,
         }
+        arrays["rows"][: len(given), 0] = given
         while True:
             arrays |= {
                 "kept": np.empty((self._room, n_series, terms)),
@@ -595,7 +599,7 @@ class LinearFlow(Flow):
             numbers = (
                 table.pointer.value or 0,
                 *(len(states), terms, n_series, n_surfaces),
-                *(self._room, self.most_steps),
+                *(self._room, self.most_steps, called["series"]),
             )
             work = Workspace(
                 RUN_TABLE, arrays, dict(zip(RUN_SIZES, numbers, strict=True))

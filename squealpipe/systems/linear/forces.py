@@ -9,7 +9,7 @@ factorized.
 import math
 from typing import Any
 
-from squealpipe.systems.compiled import part
+from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.linear.contact_numbers import (
     contact_row,
     friction_of,
@@ -29,6 +29,7 @@ from squealpipe.systems.linear.products import (
     write_columns,
 )
 from squealpipe.systems.linear.sticking import add_stick, stick_forces
+from squealpipe.systems.taylor.lanes import call
 
 
 @part
@@ -85,8 +86,14 @@ def sticking_friction(k: Any, rows: Any, i: int) -> Any:
     return k.by_contact[contact_row.stick, i]
 
 
-@part
+@inline
 def state_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
+    """Call :func:`write_forces` by its address: LLVM would copy it into each of seven callers."""
+    call(k.forces, (rows.ctypes.data, z.ctypes.data, pressing.ctypes.data))
+
+
+@inline
+def write_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
     """Compute forces at a state: the work by contact, and accelerations without those of stick."""
     n, c = k.n, k.c
     q, v = z[:n], z[n : 2 * n]

@@ -1,7 +1,8 @@
 """Taylor series of linear structures along legs of given length in one regime each; compiled.
 
 Nothing is watched here: a leg may run on beyond a surface, or backwards by as much as one step, so
-that what solves for a sequence of events is smooth. The series are those of the loop.
+that what solves for a sequence of events is smooth. The series are those of the loop, called by
+their address as there.
 """
 
 import math
@@ -14,9 +15,8 @@ import numpy as np
 from squealpipe.systems.compiled import inline
 from squealpipe.systems.linear.loop import shorter_step, step_length
 from squealpipe.systems.linear.plan import n_parameters, plan_at
-from squealpipe.systems.linear.series import series
-from squealpipe.systems.linear.sticking import settle_stick
-from squealpipe.systems.taylor.lanes import compile_called, record_viewer, view
+from squealpipe.systems.taylor.lanes import call, compile_called, record_viewer, view
+from squealpipe.systems.taylor.simd import LANES
 
 RUN_ARRAYS = (
     "rows", "series", "units", "constants", "initial", "durations", "active", "kept", "steps",
@@ -30,6 +30,7 @@ RUN_SIZES = (
     "n_surfaces",
     "n_room",
     "most_steps",
+    "take_series",
 )
 RUN_TABLE = np.dtype([(name, "i8") for name in (*RUN_ARRAYS, *RUN_SIZES)])
 _record_at: Any = record_viewer(RUN_TABLE)
@@ -59,7 +60,7 @@ def _run(address: int) -> None:
     t = _record_at(address)
     k = plan_at(t.plan)
     n, given, constants = k.n_states, n_parameters(k), k.c * k.width
-    rows = view(t.rows, (given + constants, 1), np.float64)
+    rows = view(t.rows, (given + constants, LANES), np.float64)
     mem = view(t.series, (t.n_terms, t.n_series), np.float64)
     units = view(t.units, (n, 1), np.float64)
     of_legs = view(t.constants, (t.n_legs, constants), np.float64)
@@ -74,12 +75,12 @@ def _run(address: int) -> None:
     for leg in range(t.n_legs):
         for i in range(constants):
             rows[given + i, 0] = of_legs[leg, i]
-        settle_stick(k, rows)
+        call(k.settle, (t.rows,))
         for i in range(n):
             mem[0, i] = initial[leg, i]
         clock, ends, counts[leg] = 0.0, False, 0
         while not ends and counts[leg] <= t.most_steps:
-            series(k, rows, mem)
+            call(t.take_series, (t.rows, t.series, t.n_terms))
             left = durations[leg] - clock
             step = step_length(mem, units)
             if k.curved:

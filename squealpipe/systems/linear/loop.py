@@ -21,7 +21,7 @@ import numpy as np
 
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.linear.contact_numbers import contact_row
-from squealpipe.systems.linear.forces import exact_ends
+from squealpipe.systems.linear.forces import exact_ends, write_forces
 from squealpipe.systems.linear.matrices import friction_number
 from squealpipe.systems.linear.numbering import OF_CONTACT, surface_number
 from squealpipe.systems.linear.plan import (
@@ -424,6 +424,16 @@ def _settle(parameters: int) -> None:
     settle_stick(k, numbers_of(k, parameters))
 
 
+def _forces(parameters: int, z: int, pressing: int) -> None:
+    """Call :func:`.forces.write_forces` by addresses."""
+    k = plan_of(parameters)
+    state, found = (
+        view(z, (k.n_states,), np.float64),
+        view(pressing, (k.contacts,), np.float64),
+    )
+    write_forces(k, numbers_of(k, parameters), state, found)
+
+
 @cache
 def loop() -> Any:
     """Return the compiled loop, built once a process and kept on disk."""
@@ -443,5 +453,6 @@ def functions() -> dict[str, int]:
         "gauge": compile_called(_gauge, 4, _FOLDER),
         "change": compile_called(_change, 4, _FOLDER),
         "settle": compile_called(_settle, 1, _FOLDER),
+        "forces": compile_called(_forces, 3, _FOLDER),
         "starts": compile_called(find_starts, 1, _FOLDER),
     }

@@ -6,6 +6,7 @@ Columns of matrices that products run along, and of the work, are padded with ze
 vectors, which are aligned.
 """
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -123,12 +124,13 @@ ARRAYS: dict[str, tuple[Any, ...]] = {
 """
 SIZES = (
     "n", "c", "width", "n_sorts", "n_tables", "n_shapes", "n_regimes", "n_switches", "n_states",
-    "full_stiffness", "full_damping", "balanced", "curved", "n_jobs", "settle", "n_sliders",
-    "stiffness_rows", "damping_rows", "modes", "contacts",
+    "full_stiffness", "full_damping", "balanced", "curved", "n_jobs", "n_sliders",
+    "stiffness_rows", "damping_rows", "modes", "contacts", "settle", "forces",
 )  # fmt: skip
 PLAN_TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 """Addresses and sizes: ``n_sorts`` surfaces a contact, ``n_states`` displacements, velocities and
-stretches, ``modes`` and ``contacts`` with what they are padded by."""
+stretches, ``modes`` and ``contacts`` with what they are padded by; ``settle`` and ``forces`` of
+functions that compiled code calls."""
 record_at: Any = record_viewer(PLAN_TABLE)
 plan_at: Any = table_viewer("plan", PLAN_TABLE, ARRAYS)
 
@@ -164,16 +166,16 @@ def _padded(matrix: np.ndarray) -> np.ndarray:
 def plan(
     matrices: ContactMatrices,
     numbering: Numbering,
+    called: Mapping[str, int],
     starts: np.ndarray | None = None,
     numbers: np.ndarray | None = None,
-    settle: int = 0,
 ) -> Workspace:
     """Return the plan of some matrices; it keeps its arrays.
 
     Args:
+        called: addresses of :func:`.loop.functions`.
         starts: (runs, parameters and states) from which to look for first regimes.
         numbers: (runs, contacts) for these, −1 where they are to be found.
-        settle: address of the function that is called where regimes have changed.
     """
     n, c = matrices.n_modes, matrices.n_contacts
     places = np.full(c, -1)
@@ -235,11 +237,12 @@ def plan(
         "balanced": int(matrices.balanced),
         "curved": int(matrices.curved),
         "n_jobs": 0 if starts is None else len(starts),
-        "settle": settle,
         "stiffness_rows": len(arrays["pull_back"]),
         "damping_rows": len(arrays["drag_back"]),
         "modes": arrays["by_mode"].shape[1],
         "contacts": arrays["by_contact"].shape[1],
+        "settle": called["settle"],
+        "forces": called["forces"],
     }
     # a view of nothing has no address
     arrays = {

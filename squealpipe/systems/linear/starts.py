@@ -23,16 +23,12 @@ FIRST = 1e150
 
 
 @part
-def _put(settle: Any, k: Any, rows: Any, i: int, regime: int) -> None:
-    """Put a contact into a regime.
-
-    Args:
-        settle: address of :func:`.sticking.settle_stick` as a function, and of the parameters.
-    """
+def _put(k: Any, rows: Any, i: int, regime: int) -> None:
+    """Put a contact into a regime."""
     first = parameter_row.coefficients + OF_CONTACT * k.c + 1 + i * k.width
     for which in range(k.width):
         rows[first + which, 0] = k.table[k.first[0, i] + regime, which]
-    call(settle[0], (settle[1],))
+    call(k.settle, (rows.ctypes.data,))
 
 
 @part
@@ -49,7 +45,7 @@ def _rises(k: Any, i: int, z: Any) -> Any:
 
 
 @part
-def _first_of_slider(settle: Any, k: Any, rows: Any, z: Any, i: int, piece: int) -> Any:
+def _first_of_slider(k: Any, rows: Any, z: Any, i: int, piece: int) -> Any:
     """Return the regime of a contact in whose tangential spring the stretch is a state.
 
     It slips where the spring is at its limit and the slider is not carried back from it.
@@ -62,7 +58,7 @@ def _first_of_slider(settle: Any, k: Any, rows: Any, z: Any, i: int, piece: int)
     towards = friction if friction != 0.0 else k.by_contact[contact_row.lags, i]
     back = 1 if towards < 0.0 else 0
     regime = piece * count + back
-    _put(settle, k, rows, i, regime)
+    _put(k, rows, i, regime)
     state_forces(k, rows, z, pressing)
     lag = (1.0 - 2.0 * back) * k.by_contact[contact_row.lags, i]
     mu = rows[parameter_row.coefficients + OF_CONTACT * i, 0]
@@ -75,9 +71,7 @@ def _first_of_slider(settle: Any, k: Any, rows: Any, z: Any, i: int, piece: int)
 
 
 @part
-def _first_at_belt_speed(
-    settle: Any, k: Any, rows: Any, z: Any, i: int, piece: int
-) -> Any:
+def _first_at_belt_speed(k: Any, rows: Any, z: Any, i: int, piece: int) -> Any:
     """Return the first regime that fits a contact as fast as the belt; −1 where none does.
 
     Args:
@@ -86,7 +80,7 @@ def _first_at_belt_speed(
     pressing, count = k.by_contact[contact_row.of_press], regimes_of_press(k, i)
     for kind in (count - 1, 0, 1):
         regime = piece * count + kind
-        _put(settle, k, rows, i, regime)
+        _put(k, rows, i, regime)
         state_forces(k, rows, z, pressing)
         if kind == count - 1:
             fits = holds(k, rows, i, pressing[i])
@@ -98,7 +92,7 @@ def _first_at_belt_speed(
 
 
 @part
-def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
+def _first_that_fits(k: Any, rows: Any, z: Any, i: int) -> Any:
     """Return the first regime of a contact that fits the state, the others' being as they are."""
     n, pressing = k.n, k.by_contact[contact_row.of_press]
     last = k.first[0, i + 1] - k.first[0, i] - 1
@@ -113,7 +107,7 @@ def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
         if k.tangentials[j, i] != 0.0:
             size_v += abs(z[n + j])
         reach = max(reach, abs(k.tangentials[j, i]))
-    _put(settle, k, rows, i, last)
+    _put(k, rows, i, last)
     state_forces(k, rows, z, pressing)
     press, speed = pressing[i], k.by_contact[contact_row.lags, i]
     # An equality holds within this of the size of what it is computed from, as of
@@ -125,9 +119,9 @@ def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
         return last
     piece = press_of_force(k, i, press)
     if k.sliders[i] >= 0:
-        return _first_of_slider(settle, k, rows, z, i, piece)
+        return _first_of_slider(k, rows, z, i, piece)
     if abs(speed) <= reach * equal * size_v:
-        regime = _first_at_belt_speed(settle, k, rows, z, i, piece)
+        regime = _first_at_belt_speed(k, rows, z, i, piece)
         if regime >= 0:
             return regime
     return slip_regime(k, rows, i, speed, piece)
@@ -143,7 +137,6 @@ def find_starts(address: int) -> None:
     numbers = view(t.numbers, (jobs, c), np.int64)
     opened = view(t.opened, (c,), np.int64)
     rows = view(t.scratch, (given + c * k.width, LANES), np.float64)
-    settle = t.settle, t.scratch
     # Rounds over all contacts, for each of them, in which the others' regimes may still
     # change.
     sweeps = 4
@@ -156,14 +149,14 @@ def find_starts(address: int) -> None:
             n_opened += opened[i]
             if opened[i]:
                 numbers[job, i] = 1
-            _put(settle, k, rows, i, numbers[job, i])
+            _put(k, rows, i, numbers[job, i])
         for _ in range(sweeps * n_opened):
             changed = False
             for i in range(c):
                 if opened[i]:
-                    regime = _first_that_fits(settle, k, rows, z, i)
+                    regime = _first_that_fits(k, rows, z, i)
                     changed = changed or regime != numbers[job, i]
                     numbers[job, i] = regime
-                    _put(settle, k, rows, i, regime)
+                    _put(k, rows, i, regime)
             if not changed or c == 1:
                 break

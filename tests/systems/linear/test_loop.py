@@ -128,7 +128,7 @@ def test_friction_in_stick_is_of_the_least_norm(dependent):
             old.name, old.normal, mixed, old.stiffness, old.preload, old.speed
         )
     system = structure.with_(contacts=contacts).system()
-    table = plan(system.matrices, system.numbering)
+    table = plan(system.matrices, system.numbering, functions())
     values = {name: np.array([x]) for name, x in system.parameters.items()}
     first = 4 + OF_CONTACT * 6
     rows = np.zeros((first + 6 * system.numbering.width, 16))
