@@ -35,9 +35,9 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba import types
-from numba.core import event, typed_passes, untyped_passes
+from numba.core import event, ir, ir_utils, typed_passes, untyped_passes
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager
+from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
 from numba.core.registry import CPUDispatcher
 
 from squealpipe.systems.progress import stage
@@ -47,9 +47,40 @@ _settings: Any = numba.config  # untyped, the home of CACHE_DIR
 _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
 _Dispatcher: Any = CPUDispatcher
 _Compiler: Any = CompilerBase
+_Pass: Any = FunctionPass
+_register_pass: Any = register_pass
+_ir: Any = ir
+_ir_utils: Any = ir_utils
 _Passes: Any = PassManager
 _Function: Any = types.Function
 _widened: Any = types.unliteral
+
+
+@_register_pass(mutates_CFG=False, analysis_only=False)
+class _PlacesOfTuples(_Pass):  # type: ignore[misc]
+    """Write constant places as such: of a tuple they decide about the type.
+
+    numba looks for constants in every index, by an error for each that is none.
+    """
+
+    _name = "places_of_tuples"
+
+    def __init__(self) -> None:
+        super().__init__()
+
+    def run_pass(self, state: Any) -> bool:
+        """Rewrite the code of a function before its types are inferred."""
+        code = state.func_ir
+        for block in code.blocks.values():
+            for each in block.find_insts(_ir.Assign):
+                value = each.value
+                if getattr(value, "op", None) == "getitem":
+                    place = _ir_utils.guard(_ir_utils.find_const, code, value.index)
+                    if isinstance(place, int):
+                        each.value = _ir.Expr.static_getitem(
+                            value.value, place, value.index, value.loc
+                        )
+        return True
 
 
 class KernelCompiler(_Compiler):  # type: ignore[misc]
@@ -67,7 +98,7 @@ class KernelCompiler(_Compiler):  # type: ignore[misc]
             untyped_passes.IRProcessing,
             untyped_passes.RewriteSemanticConstants,
             untyped_passes.DeadBranchPrune,
-            untyped_passes.GenericRewrites,
+            _PlacesOfTuples,
             untyped_passes.ReconstructSSA,
             typed_passes.NopythonTypeInference,
             typed_passes.PreLowerStripPhis,

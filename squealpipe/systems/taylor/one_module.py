@@ -7,19 +7,21 @@ numba's own passes, and compiled.
 Source: numba's pull request 9566, which proposes the same for functions that Python does not call.
 Invariant: what was written for a loop can be linked into other code that numba compiles, too; the
 results are the same to the last bit.
-Cost: two thirds of what is left is numba's inference of types.
+Cost: of what is left a third each is LLVM's and for writing LLVM's code, a tenth for types.
 """
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import llvmlite.binding
 import numba
+from llvmlite import ir
 from llvmlite.binding import Linkage
 from numba.core import codegen
 from numba.core.registry import cpu_target
+from numba.np import arrayobj
 
 from squealpipe.systems.compiled import KernelCompiler
 
@@ -28,6 +30,7 @@ _config: Any = numba.config
 _Library: Any = codegen.JITCodeLibrary
 _Codegen: Any = codegen.JITCPUCodegen
 _target: Any = cpu_target
+_arrays: Any = arrayobj
 _llvm: Any = llvmlite.binding
 
 
@@ -104,16 +107,46 @@ def _parts() -> _Parts:
     return _Parts("parts")
 
 
+class _Array:
+    """Fields of an array, read from its value and written into it.
+
+    numba's own puts the value on the stack wherever one of its fields is needed, for LLVM to take
+    it from there again, and looks in vain for a conversion each time: a third of what it writes.
+    """
+
+    def __init__(
+        self, kind: Any, context: Any, builder: Any, value: Any = None
+    ) -> None:
+        model = context.data_model_manager[kind]
+        if value is None:
+            value = ir.Constant(model.get_value_type(), None)
+        vars(self).update(
+            _context=context, _builder=builder, _datamodel=model, _value=value
+        )
+
+    def __getattr__(self, name: str) -> Any:
+        return self._datamodel.get(self._builder, self._value, name)
+
+    def __setattr__(self, name: str, field: Any) -> None:
+        changed = self._datamodel.set(self._builder, self._value, field, name)
+        vars(self)["_value"] = changed
+
+    def _getvalue(self) -> Any:
+        return self._value
+
+
 @contextmanager
-def _only_written() -> Iterator[None]:
+def only_written() -> Iterator[None]:
     """Let numba compile nothing of what it writes meanwhile."""
     context = _target.target_context
-    usual = context.codegen()
+    usual, usual_array = context.codegen(), _arrays.make_array
     context._internal_codegen = _parts()  # noqa: SLF001 (has no public setter)
+    _arrays.make_array = partial(partial, _Array)
     try:
         yield
     finally:
         context._internal_codegen = usual  # noqa: SLF001
+        _arrays.make_array = usual_array
 
 
 def compile_entry(function: Callable[..., Any], signature: Any) -> tuple[str, bytes]:
@@ -121,7 +154,7 @@ def compile_entry(function: Callable[..., Any], signature: Any) -> tuple[str, by
 
     The caller holds numba's lock.
     """
-    with _only_written():
+    with only_written():
         entry = _numba.cfunc(
             signature, error_model="numpy", pipeline_class=KernelCompiler
         )(function)

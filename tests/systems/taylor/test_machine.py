@@ -9,9 +9,10 @@ import numba
 import numpy as np
 import pytest
 from numba.core import codegen
+from numba.np import arrayobj
 
 from squealpipe.systems.compiled import part
-from squealpipe.systems.taylor import machine
+from squealpipe.systems.taylor import machine, one_module
 from squealpipe.systems.taylor.writing import compile_source
 
 SOURCE = """
@@ -122,3 +123,44 @@ def test_what_a_loop_calls_is_compiled_with_it_alone_and_serves_other_code(
     assert len(optimized) == 1
     assert ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(address)(3.0) == 28.0
     assert numba.njit(lambda x: cube(x) - 1.0)(3.0) == 26.0
+
+
+def test_parts_read_and_write_arrays_as_python_does(monkeypatch):
+    """They do without numba's structure of an array, which is made for them nowhere."""
+    made, of_numba = [], arrayobj.make_array
+
+    class Counted(one_module._Array):
+        def __init__(self, *arguments, **named):
+            made.append(arguments)
+            super().__init__(*arguments, **named)
+
+    @part
+    def mix(a, b, i, j):
+        row, tail, across = a[j], b[1:i], a.T
+        a[i, -1] = row[-j] + tail[0] + across[i, j]
+        a[0, :2] = b[-1]
+        tail[j - i] += a.size + tail.nbytes + a.shape[1]
+        total = 0.0
+        for each in b:
+            total += each
+        return total + a[:, 1].strides[0] + across[2:, ::2].sum() + (row, 2)[1]
+
+    @numba.njit
+    def by_compiled_code(a, b, i, j):
+        return mix(a, b, i, j)
+
+    def arrays():
+        return np.arange(12.0).reshape(3, 4), np.linspace(0.0, 2.0, 7) ** 2
+
+    kinds = [numba.typeof(each) for each in (*arrays(), 1, 1)]
+    with monkeypatch.context() as within:
+        within.setattr(one_module, "_Array", Counted)
+        within.setattr(arrayobj, "make_array", None)
+        with one_module.only_written():
+            mix.compile(tuple(kinds))
+    assert len(made) > 20
+    assert arrayobj.make_array is of_numba  # for whoever uses numba
+    compiled, true = arrays(), arrays()
+    assert by_compiled_code(*compiled, 2, 1) == mix.py_func(*true, 2, 1)
+    np.testing.assert_array_equal(compiled[0], true[0])
+    np.testing.assert_array_equal(compiled[1], true[1])
