@@ -177,13 +177,19 @@ def _address_of(array: np.ndarray) -> int:
     return ctypes.addressof(start.from_buffer(buffer))
 
 
-def compile_advance(advance: Callable[..., Any], folder: Path | None = None) -> Any:
+def compile_advance(
+    advance: Callable[..., Any], folder: Path | None = None, *, vectorize: bool = True
+) -> Any:
     """Return a C function of ``advance(table) -> busy lanes``, stored by a digest of this folder.
 
     Args:
         folder: another one whose sources count.
+        vectorize: let LLVM look for loops over numbers side by side.
     """
-    address = address_of_entry(advance, types.intp(types.voidptr), _sources(folder))
+    signature = types.intp(types.voidptr)
+    address = address_of_entry(
+        advance, signature, _sources(folder), vectorize=vectorize
+    )
     return ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(address)
 
 

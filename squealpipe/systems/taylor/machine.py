@@ -81,16 +81,22 @@ def address_of(write: Write, n_arguments: int, content: bytes) -> int:
 
 
 def address_of_entry(
-    function: Callable[..., Any], signature: Any, content: bytes
+    function: Callable[..., Any],
+    signature: Any,
+    content: bytes,
+    *,
+    vectorize: bool = True,
 ) -> int:
     """Return the address of a C function that numba writes, compiled or taken from the store.
 
     Args:
         content: all sources that the function is made of.
+        vectorize: let LLVM look for loops over numbers side by side.
     """
     name = f"{function.__module__}.{function.__qualname__}{signature}"
     return _address(
-        name.encode() + content, lambda _: compile_entry(function, signature)
+        name.encode() + content,
+        lambda _: compile_entry(function, signature, vectorize=vectorize),
     )
 
 

@@ -73,6 +73,7 @@ class _Parts(_Codegen):  # type: ignore[misc]
     """Generator of such code."""
 
     _library_class = _Part
+    vectorizes = True
 
     def set_env(self, env_name: str, env: Any) -> None:
         """Do nothing: code without Python's objects needs no environment."""
@@ -88,7 +89,7 @@ class _Parts(_Codegen):  # type: ignore[misc]
         That took a third of LLVM's time and made code half as long again, which is no faster.
         """
         tuning = _llvm.create_pipeline_tuning_options(opt)
-        tuning.loop_vectorization = loop_vectorize
+        tuning.loop_vectorization = loop_vectorize and self.vectorizes
         tuning.slp_vectorization = slp_vectorize
         tuning.loop_unrolling = False
         return _llvm.create_pass_builder(self._tm, tuning)
@@ -149,11 +150,17 @@ def only_written() -> Iterator[None]:
         _arrays.make_array = usual_array
 
 
-def compile_entry(function: Callable[..., Any], signature: Any) -> tuple[str, bytes]:
+def compile_entry(
+    function: Callable[..., Any], signature: Any, *, vectorize: bool
+) -> tuple[str, bytes]:
     """Return the name and the object file of a C function that numba writes.
 
     The caller holds numba's lock.
+
+    Args:
+        vectorize: let LLVM look for loops over numbers side by side.
     """
+    _parts().vectorizes = vectorize
     with only_written():
         entry = _numba.cfunc(
             signature, error_model="numpy", pipeline_class=KernelCompiler
