@@ -13,6 +13,7 @@ import sys
 import tempfile
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -184,6 +185,10 @@ def snakemake_command(
     A quick study goes beside the full one: ``results/mine-quick`` beside ``results/mine``.
     """
     refuse_other_package(Path(directory))
+    if find_spec("snakemake") is None:
+        raise WorkflowError(
+            "a study needs Snakemake; pip install 'squealpipe[study]', or '.[study]' in a checkout"
+        )
     own_files = [Path(path).absolute() for path in configs]
     full = read_study(PAPER, *own_files)
     paths = [*([PAPER.with_name("quick.yaml")] if quick else []), *own_files]

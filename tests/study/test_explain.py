@@ -179,6 +179,13 @@ def test_what_cannot_be_planned_is_one_message(tmp_path, monkeypatch):
         explain(directory=tmp_path)
 
 
+def test_without_snakemake_a_study_says_what_to_install(tmp_path, monkeypatch):
+    """After README's first line a run ended with: No module named snakemake."""
+    monkeypatch.setitem(sys.modules, "snakemake", None)
+    with pytest.raises(WorkflowError, match=r"pip install 'squealpipe\[study\]'"):
+        snakemake_command(directory=tmp_path)
+
+
 @pytest.mark.parametrize("ask", [snakemake_command, explain])
 def test_a_checkout_with_a_package_of_its_own_says_which_was_imported(ask, tmp_path):
     (tmp_path / "Snakefile").touch()

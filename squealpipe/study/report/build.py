@@ -14,7 +14,7 @@ from typing import Any, Literal
 import typst
 from jinja2 import Environment, StrictUndefined
 
-from squealpipe.store.whole_files import whole_file
+from squealpipe.store.whole_files import not_written, whole_file
 
 TEMPLATES = Path(str(files("squealpipe.study.report"))) / "templates"
 
@@ -61,15 +61,18 @@ def _source(
 ) -> Iterator[Path]:
     """The Typst source with data and pictures beside it, in a folder of its own."""
     with tempfile.TemporaryDirectory(prefix="squealpipe-report-") as folder:
-        root = Path(folder) / "report"
-        shutil.copytree(TEMPLATES, root)
-        (root / "data.json").write_text(
-            json.dumps(content, allow_nan=False), encoding="utf-8"
-        )
-        for path, source in pictures.items():
-            target = root / path
-            target.parent.mkdir(exist_ok=True)
-            shutil.copyfile(source, target)
+        root = Path(folder)
+        try:
+            (root / "data.json").write_text(
+                json.dumps(content, allow_nan=False), encoding="utf-8"
+            )
+            templates = {path.name: path for path in TEMPLATES.iterdir()}
+            for path, source in {**templates, **pictures}.items():
+                target = root / path
+                target.parent.mkdir(exist_ok=True)
+                shutil.copyfile(source, target)
+        except OSError as error:  # the disk of temporary files may be another one
+            raise not_written(root, error) from error
         yield root / f"{template}.typ"
 
 

@@ -2,6 +2,7 @@
 
 import math
 import re
+import resource
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from squealpipe.store import load
 from squealpipe.store.mistakes import ConfigError
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamped
+from squealpipe.store.whole_files import StoreError
 from squealpipe.study.configuration.settings import PAPER, parse_study, read_study
 from squealpipe.study.figures.declared import draw, reads
 from squealpipe.study.report import answer
@@ -153,6 +155,20 @@ def test_report_begins_with_the_answer_and_has_no_paper(
     assert words.index(told[0]) < words.rindex("What changes it")
     assert "With scattered parameters" not in words
     assert page.read_text(encoding="utf-8").count("<img") == len(figures)
+
+
+def test_a_full_disk_of_temporary_files_is_told_with_its_folder(tmp_path):
+    usual = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))
+    page, pdf = tmp_path / "index.html", tmp_path / "report.pdf"
+    try:
+        with pytest.raises(
+            StoreError, match=r"cannot write .*report-.*File too large; free space"
+        ):
+            write_document("study", {"title": 200 * "a"}, {}, page=page, pdf=pdf)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    assert not any(tmp_path.iterdir())
 
 
 def test_scatter_is_told_where_it_is_configured(made_and_figures, tmp_path):
