@@ -1,7 +1,7 @@
 """The answer of a dataset ``assess``, of a pad or structure, in words that need no handbook."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +11,7 @@ from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome
 from squealpipe.structures.schema.squealing import GIVE_DAMPING
 from squealpipe.systems.inputs.units import engineering
-from squealpipe.systems.inputs.words import number, off_by, percent
+from squealpipe.systems.inputs.words import number, off_by, part_of_time, percent
 from squealpipe.vibration.schema import Mechanism, error_of
 from squealpipe.vibration.settling import ALWAYS
 
@@ -119,8 +119,26 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
             if stuck > 0
             else "without sticking"
         )
-        return f"{said} at {at} {how}; contact is kept."
+        return f"{said} at {at} {how}; {contact_kept(_opened(answer, prefix))}."
     return said + _not_settled(answer, prefix)
+
+
+def contact_kept(opened: Iterable[float]) -> str:
+    """Say whether contact is kept, by the shares of the time in which contacts are open.
+
+    A verdict of squeal allows one loss, and contacts that are always open.
+    """
+    lost = max((share for share in opened if share < ALWAYS), default=0.0)
+    if lost > 0.0:
+        return f"contact is lost {part_of_time(lost)} of the time"
+    return "contact is kept"
+
+
+def _opened(answer: xr.Dataset, prefix: str) -> list[float]:
+    """Return the share of the time in which each contact is open; of a sudden start the largest."""
+    if prefix or not is_structure(answer):
+        return [float(answer[f"{prefix}separated_fraction"])]
+    return [float(share) for share in answer.contact_separated_fraction]
 
 
 def _not_settled(answer: xr.Dataset, prefix: str) -> str:
@@ -137,10 +155,8 @@ def _not_settled(answer: xr.Dataset, prefix: str) -> str:
         )
     after = engineering(value("settled_by"), "s")
     # of a structure after a sudden start it is not stored whether all contacts are open
-    opened = [value("separated_fraction")]
-    if is_structure(answer):
-        opened = [] if prefix else answer.contact_separated_fraction.values.tolist()
-    if opened and min(opened) >= ALWAYS:
+    is_known = not (prefix and is_structure(answer))
+    if is_known and min(_opened(answer, prefix)) >= ALWAYS:
         return (
             f": {_what(answer)} has left the belt, and had not come back after {after}; without "
             "contact there is nothing to judge."

@@ -18,7 +18,12 @@ from squealpipe.structures.schema.squealing import (
     Kind,
     OnsetKind,
 )
-from squealpipe.study.report.answer import damping_advice, is_shifted, level_change
+from squealpipe.study.report.answer import (
+    contact_kept,
+    damping_advice,
+    is_shifted,
+    level_change,
+)
 from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.inputs.words import number, off_by, part_of_time, percent
 
@@ -72,7 +77,7 @@ def headline(answer: xr.Dataset) -> str:
     first = answer.isel(attractor=_end(answer))
     at = _frequency_of(answer, first) + _near(answer, first)
     if verdict is Verdict.squeals:
-        return f"{said} at {at}; contact is kept."
+        return f"{said} at {at}; {contact_kept(first.separated_fraction.values)}."
     worst = int(first.separated_fraction.values.argmax())
     loses = first.isel(contact=worst)
     return (
