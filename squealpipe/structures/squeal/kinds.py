@@ -7,7 +7,7 @@ the motion. What neither repeats nor runs away is a torus.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -131,6 +131,7 @@ def described(
         others = run(plant, states[1:], times, how, regime=regimes[1:])["samples"]
         apart = _apart(plant, [*raw["samples"], *others], times, beside.extent)
         lost = apart.grown >= KindRules.exponential_growth
+    window = statistics_of(plant, raw, length).row(0)
     modal = plant.modal_velocities(raw["samples"][0])
     step, resolution = float(times[0]), 1.0 / length
     omega, amplitude = amplitude_spectrum(modal.T, step)
@@ -149,12 +150,11 @@ def described(
             cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
             kind, leaves = Kind.cycle, False
-            raw, length = _whole_periods(plant, cycle, how)
+            window = _of_cycle(plant, cycle, how, window)
         elif apart.grown <= KindRules.linear_growth and not _repeats(
             raw, length, KindRules.repeated_intervals
         ):
             kind = Kind.torus
-    window = statistics_of(plant, raw, length).row(0)
     lines = omega / (2.0 * np.pi)
     if leaves:
         kind = Kind.undetermined
@@ -179,16 +179,19 @@ def _within(late_growth: float) -> float:
     return KindRules.nearly_repeated
 
 
-def _whole_periods(
-    plant: Plant, cycle: Cycle, how: Running
-) -> tuple[dict[str, np.ndarray], float]:
-    """Run whole periods of a cycle from a state on it; return raw results and their length, s."""
+def _of_cycle(
+    plant: Plant, cycle: Cycle, how: Running, ended: StructureWindows
+) -> StructureWindows:
+    """Return the statistics of whole periods of a cycle, and the end of the run that came to it."""
     state, number = cycle.start()
     regimes = np.atleast_2d(cycle.map.flow.system.joint.regimes(number))
     length = KindRules.cycle_periods * cycle.period
     count = KindRules.cycle_samples
     times = length * np.append((np.arange(count) + 0.5) / count, 1.0)
-    return run(plant, state[None], times, how, regime=regimes), length
+    raw = run(plant, state[None], times, how, regime=regimes)
+    whole = statistics_of(plant, raw, length).row(0)
+    # not in the middle of a leg, where what is sampled in step with the period is symmetric
+    return replace(whole, final=ended.final, regimes=ended.regimes)
 
 
 def is_irregular(plant: Plant, settled: SettledRun, how: Running) -> bool:
