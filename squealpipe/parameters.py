@@ -385,7 +385,7 @@ UNITS_OF_INPUTS = {
 """Name → CF unit of every input of a brake that is one number."""
 
 KEYS_THAT_TAKE = UNITS_OF_INPUTS | {"alpha1": "rad", "alpha2": "rad", "t_end": "s"}
-"""The same with what else a question of a brake is asked with, for messages that name a key."""
+"""Units of these inputs, of both angles and of the horizon, for messages that name a key."""
 
 PHYSICAL = tuple(name for name, row in TABLE.items() if row.enters_a1)
 """Parameters of a run of A1."""
@@ -395,7 +395,7 @@ NUMBERS_OF_A1: dict[str, str] = {
     for name in PHYSICAL
     if TABLE[name].allowed != "law"
 }
-"""What laws and engine read → the parameter that it is, for all numbers that enter A1."""
+"""Name that laws and engine read → the parameter behind it, for all numbers that enter A1."""
 
 
 def _by_symbol() -> dict[str, str]:

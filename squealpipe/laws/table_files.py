@@ -27,7 +27,7 @@ from squealpipe.laws.sheets import sheet
 from squealpipe.systems.inputs.units import UnitError, in_si, is_unit
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".xlsx")
-"""Of files that are read as tables without being called so."""
+"""Endings of files that are read as tables without being called so."""
 
 
 class Cell(NamedTuple):

@@ -50,7 +50,7 @@ POWER_OF_TEN_BELOW = 1e-3
 """Largest number on an axis whose labels are written with a power of ten."""
 
 white_halo = [withStroke(linewidth=2, foreground="white")]
-"""Around words and marks on a map."""
+"""White border around words and marks on a map."""
 HATCH = "//////"
 
 ANGLE_NAMES = ("alpha1", "alpha2")

@@ -8,8 +8,8 @@ from squealpipe.brake.orbits.orbits import Orbit, OrbitEquations, orbit_across
 from squealpipe.brake.orbits.tracing import TraceEnd, TraceSettings, trace_branch
 
 OFFSETS = (1e-4, 3e-4, 1e-3, 3e-3)
-"""Of the first orbits from the doubling, over 1 + |z|; there the trace cannot separate the doubled
-orbit from the one run through twice."""
+"""Distances of the first orbits from the doubling, over 1 + |z|; there the trace cannot separate
+the doubled orbit from the one run through twice."""
 
 
 def doubled_start(

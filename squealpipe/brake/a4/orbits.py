@@ -126,7 +126,7 @@ SHAPE = (
     "largest_speed",
     "sliding_assumption",
 )
-"""What :func:`orbit_values` gives."""
+"""Names of the numbers that :func:`orbit_values` gives."""
 
 
 def orbit_values(

@@ -22,7 +22,7 @@ Happens = Callable[[Array], NDArray[np.bool_]]
 """(n, size) vectors → whether it happens for each."""
 
 IMPROVED = 4
-"""How many of the best directions are improved, and in how many rounds of random steps."""
+"""Number of best directions that are improved, and of rounds of random steps."""
 
 
 @dataclass(frozen=True)

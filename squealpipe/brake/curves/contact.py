@@ -40,7 +40,7 @@ from squealpipe.systems.inputs.words import suggestion
 from squealpipe.validation import Line, Number, Positive, Tolerance, Workers, one_of
 
 LOST_SIDE = 1e-8
-"""How far beside the boundary contact is lost in the run that says when."""
+"""Distance from the boundary of the run that tells when contact is lost, over the ranges."""
 
 
 class Square:

@@ -29,7 +29,7 @@ state_row_type = np.dtype(
 )
 """One linear state as compiled code reads it."""
 GIVEN_UP = -2.0
-"""What :func:`next_crossing` returns after too many look-aheads."""
+"""Answer of :func:`next_crossing` after too many look-aheads."""
 
 
 @part

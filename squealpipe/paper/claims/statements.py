@@ -18,7 +18,7 @@ PAPER_STATEMENTS = (
     *figures_10_to_13.rows,
     *conclusions.rows,
 )
-"""What the paper says."""
+"""Statements of the paper, with their checks."""
 
 STATEMENTS = (*PAPER_STATEMENTS, *misprints.rows)
 """Every row of the claims table."""

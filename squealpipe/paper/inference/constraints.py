@@ -86,7 +86,7 @@ class SeveralStarts:
 
 
 registered_constraints: list[Constraint] = []
-"""What the paper says of its figures, where it constrains the parameters: the functions below."""
+"""Statements of the paper on its figures that constrain the parameters: the functions below."""
 
 Check = Callable[[Candidates], StatementMargin]
 

@@ -42,7 +42,7 @@ METHOD_SECTIONS = {
     "failures": ReportSection("Where methods fail", ("where_methods_fail",)),
     "needed": ReportSection("No more model than a scene needs", ("model_needed",)),
 }
-"""What a user of the methods asks first; the evidence is in the supplement."""
+"""Questions that a user of the methods asks first; the evidence is in the supplement."""
 
 BEYOND_THE_PAPER = {
     "charts": ReportSection(
@@ -65,7 +65,7 @@ BEYOND_THE_PAPER = {
         "How far each verdict carries", ("verdict_robustness",)
     ),
 }
-"""What the paper leaves out."""
+"""Questions that the paper leaves open."""
 
 SUPPLEMENT = {
     "parameters": ReportSection(

@@ -263,7 +263,7 @@ Number = Annotated[float, BeforeValidator(_number)]
 Positive = Annotated[Number, Gt(0)]
 NotNegative = Annotated[Number, Ge(0)]
 Tolerance = Annotated[Number, Interval(gt=1e-18, lt=1e-2)]
-"""Of the Taylor integrator, over the sizes of the states."""
+"""Tolerance of the Taylor integrator, over the sizes of the states."""
 Extended = Annotated[float, BeforeValidator(_no_truth)]
 """A number that may be infinite."""
 Whole = Annotated[int, BeforeValidator(_whole)]

@@ -44,7 +44,7 @@ TURNS = (
 )
 """Units of angles, which pint takes for plain numbers."""
 TURNING, CYCLES = (*TURNS, "revolution"), ("hertz",)
-"""What names of units of angular frequencies hold, rpm among them, and of frequencies."""
+"""Parts of the names of units of angular frequencies, rpm among them, and of frequencies."""
 USUAL = (
     *(
         "g",
