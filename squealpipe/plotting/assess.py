@@ -39,6 +39,7 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
     flags, regimes = meanings(answer.path_regime), answer.path_regime.values
     if "alpha1" in answer:
         regimes = slip_along_belt(regimes, parameter(answer, "belt_speed"))
+    words = {"slip_slower": "slip", "slip_faster": "faster than the belt"}
     for value in np.unique(regimes):
         name = flags[int(value)]
         if name not in style.REGIME_COLOURS:
@@ -49,7 +50,7 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
             factor * shown,
             color=style.REGIME_COLOURS[name],
             linewidth=0.7,
-            label=flag_words(name).replace("slip slower", "slip"),
+            label=words.get(name, flag_words(name)),
         )
     # a structure's contacts are closed up to a displacement of their own
     limit = float(answer.preload) if "preload" in answer else np.inf

@@ -101,7 +101,7 @@ def layers(
             ),
             "impact_rate": Layer("impacts per time", hammering.impact_rate),
             "predictability": Layer(
-                "predictable until",
+                "predictable until (at most the end of the run)",
                 hammering.predictability_horizon,
                 "beyond it a single run means nothing; the largest value is the end of the runs",
             ),
