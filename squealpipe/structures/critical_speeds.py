@@ -2,17 +2,19 @@
 
 Modes are followed along the speed as they are along friction (:mod:`.numbering`), with the matrices
 and the steady sliding of each speed, and the first speed at which growth passes zero is located as
-a critical friction is (:mod:`.onset`). On the way the speed is divided by the largest, so that one
-tolerance serves for m/s and rad/s.
+a critical friction is (:mod:`.onset`). A mode may pass zero twice between two speeds: where the
+tangents of its growth at both, by exact derivatives, meet beyond zero a speed is added between. On
+the way the speed is divided by the largest, so that one tolerance serves for m/s and rad/s.
 """
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from squealpipe.structures.following import successors
-from squealpipe.structures.numbering import Way
+from squealpipe.structures.numbering import Step, Way
 from squealpipe.structures.onset import onset
 from squealpipe.structures.pencil import Pencil
 from squealpipe.structures.refinement import Eigenpair
@@ -87,7 +89,7 @@ def critical_speeds(
     if start is None or not unit:
         return [CriticalSpeed(np.nan, SpeedOnset.not_followed) for _ in numbers]
     solver = start.solver
-    along = Way(
+    along = _followed(
         SpeedSolver(
             solver.structure,
             solver.limits,
@@ -96,9 +98,9 @@ def critical_speeds(
             None,
             mu=mu,
             unit=unit,
-        )
+        ),
+        (speeds[order] / unit).tolist(),
     )
-    along.follow((speeds[order] / unit).tolist(), None)
     if not along.steps:
         return [CriticalSpeed(np.nan, SpeedOnset.not_followed) for _ in numbers]
     first, step = next(iter(along.steps.values())), start.steps[mu]
@@ -114,6 +116,93 @@ def critical_speeds(
         else CriticalSpeed(np.nan, SpeedOnset.not_followed)
         for number in numbers
     ]
+
+
+def _followed(solver: SpeedSolver, shares: list[float]) -> Way:
+    """Return the modes along the speed, also where one may grow for a while between two shares."""
+    # how often a step may be divided; each time it is about three times as short
+    most_divisions = 5
+    for division in range(most_divisions + 1):
+        along = Way(solver)
+        along.follow(shares, None)
+        between = [
+            share
+            for (low, before), (high, after) in pairwise(along.steps.items())
+            if (share := _may_turn(along, (low, before), (high, after))) is not None
+        ]
+        if not between or division == most_divisions:
+            break
+        shares = sorted({*shares, *between})
+    return along
+
+
+def _may_turn(
+    along: Way, before: tuple[float, Step], after: tuple[float, Step]
+) -> float | None:
+    """Return where the growth of a mode may have passed zero and come back; None if none may."""
+    (low, first), (high, second) = before, after
+    common = [
+        number
+        for number in map(int, first.numbers)
+        if second.place(number) is not None
+        and (along.grown(first, number) is None)
+        == (along.grown(second, number) is None)
+    ]
+    if not common:
+        return None
+    one, other = (
+        [pair for number in common if (pair := step.pair(number)) is not None]
+        for step in (first, second)
+    )
+    length = high - low
+    starts, ends = (np.array([pair.value.real for pair in row]) for row in (one, other))
+    # towards zero of modes that grow is down
+    sign = np.where(starts > 0, -1.0, 1.0)
+    starts, ends = sign * starts, sign * ends
+    try:
+        rises = sign * length * _slopes(along.solver, low, one, length)
+        falls = sign * length * _slopes(along.solver, high, other, -length)
+    except NoSlidingError:
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meet = (ends - falls - starts) / (rises - falls)
+        tops = starts + rises * meet
+    errors = np.array([max(a.error, b.error) for a, b in zip(one, other, strict=True)])
+    turns = (rises > 0) & (falls < 0) & (tops > errors) & (starts < 0) & (ends < 0)
+    if not turns.any():
+        return None
+    place = float(meet[np.argmax(np.where(turns, tops, -np.inf))])
+    return low + length * min(max(place, 0.1), 0.9)
+
+
+def _slopes(
+    solver: Solver, share: float, pairs: list[Eigenpair], length: float
+) -> np.ndarray:
+    """Return how growth changes with the share of the speed, towards one side."""
+    # part of the step over which the matrices are differentiated
+    step = 1e-5 * length
+    here, there = solver.pencil(share), solver.pencil(share + step)
+    s = np.array([pair.value for pair in pairs])
+    right, left = (
+        np.stack([getattr(pair, name) for pair in pairs], axis=1)
+        for name in ("right", "left")
+    )
+
+    def forms(pencil: Pencil) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        damped = pencil.damping @ right
+        if pencil.modal is not None:
+            damped = damped + pencil.modal.product(right)
+        products = pencil.mass @ right, damped, pencil.stiffness @ right
+        mass, damping, stiffness = (
+            np.sum(left.conj() * each, axis=0) for each in products
+        )
+        return mass, damping, stiffness
+
+    mass, damping, stiffness = forms(here)
+    _, other_damping, other_stiffness = forms(there)
+    change = s * (other_damping - damping) + other_stiffness - stiffness
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray((-change / (2.0 * s * mass + damping)).real / step)
 
 
 def _first_change(along: Way, number: int, unit: float) -> CriticalSpeed:

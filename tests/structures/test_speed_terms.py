@@ -94,6 +94,27 @@ def test_critical_speeds_are_where_growth_passes_zero():
     assert located >= 2
 
 
+def test_a_mode_that_grows_only_between_the_speeds_asked_for_is_no_stable_one():
+    """Damping 0.01 (Ω − 2.5 + 1/Ω) vanishes at 0.5 and 2; its tangents at both ends meet below."""
+    along = np.diag([0.01, 0.0])
+    structure = Structure(
+        np.eye(2),
+        np.diag([40.0, 90.0]),
+        np.diag([-0.025, 0.1]),
+        contacts=[Contact("c", {1: 1.0}, {0: 1.0}, 3.0, 10.0)],
+        mu=0.0,
+        belt_speed=1.0,
+        speed_terms={"damping": [(along, 1), (along, -1)]},
+    )
+    for speeds in ([0.3, 4.0], [0.3, 0.4, 3.0]):
+        modes = structure.complex_modes(belt_speed=speeds)
+        assert modes.speed_onset.values.tolist() == [
+            SpeedOnset.turns_unstable,
+            SpeedOnset.stable,
+        ]
+        assert float(modes.critical_speed[0]) == pytest.approx(0.5, rel=1e-9)
+
+
 def test_a_falling_friction_stops_feeding_a_mode_at_a_speed():
     """m q̈ + (c + N μ′(V)) q̇ + k q: unstable below the speed at which N |μ′| = c."""
     contact = Contact("c", {1: 1.0}, {0: 1.0}, stiffness=1.0, preload=10.0)
