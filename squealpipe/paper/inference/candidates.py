@@ -17,7 +17,7 @@ from squealpipe.paper.inference.unstable_cells import (
     unstable_along_edges,
     unstable_cells,
 )
-from squealpipe.paper.schema.growth import GrowthRule, growth_fails
+from squealpipe.paper.schema.growth import GrowthRule, growth_fails, growth_margin
 from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
 from squealpipe.reading import reading_of
 from squealpipe.schema import Outcome
@@ -146,7 +146,8 @@ class Candidates:
 
         Window after window starts where the one before ended. A run that ended early is not taken
         up again, and its windows from there on are NaN; so, unless margins are wanted, one that
-        does not grow by the rule of :mod:`squealpipe.paper.schema.growth` whatever comes next.
+        does not grow by the rule of :mod:`squealpipe.paper.schema.growth` whatever comes next. Nor
+        is the last window run to its end then if half of it shows growth and only that is asked.
         """
         sizes = np.full((self.size, GrowthRule.n_windows), np.nan)
         outcome = np.full(self.size, int(Outcome.converged), np.int8)
@@ -154,6 +155,19 @@ class Candidates:
         state = state.copy()
         half = self.size // 2
         alike = np.zeros(half, bool)
+
+        def run(rows: np.ndarray, window: int, share: float = 1.0) -> Ensemble:
+            some = self.subset(rows)
+            runs = some.ensemble(
+                scene.alpha1,
+                scene.alpha2,
+                t_end=share * GrowthRule.window * some.time_unit,
+                tracked=("x",),
+                initial_state=state[rows],
+            )
+            sizes[rows, window] = np.maximum(runs.early_max_x, runs.late_max_x)
+            return runs
+
         for window in range(GrowthRule.n_windows):
             going = outcome == Outcome.converged
             if self.paired and window >= GrowthRule.n_compared:
@@ -162,18 +176,16 @@ class Candidates:
                 alike |= close.all(axis=1)
                 going[half:] &= ~alike
             left = np.flatnonzero(going if self.exact else going & ~growth_fails(sizes))
+            if window == GrowthRule.n_windows - 1 and not self.exact:
+                # the margins of two starts that differ are compared, not their signs alone
+                rows = left[np.tile(alike, 2)[left]] if self.paired else left
+                runs = run(rows, window, 0.5)
+                grown = growth_margin(sizes[rows]) > 0.0
+                left = np.setdiff1d(left, rows[grown & (runs.outcome == outcome[rows])])
             if not left.size:
                 break
-            some = self.subset(left)
-            run = some.ensemble(
-                scene.alpha1,
-                scene.alpha2,
-                t_end=GrowthRule.window * some.time_unit,
-                tracked=("x",),
-                initial_state=state[left],
-            )
-            sizes[left, window] = np.maximum(run.early_max_x, run.late_max_x)
-            outcome[left], state[left] = run.outcome, run.final_state
+            runs = run(left, window)
+            outcome[left], state[left] = runs.outcome, runs.final_state
         rows = np.flatnonzero(alike)
         sizes[half + rows], outcome[half + rows] = sizes[rows], outcome[rows]
         return sizes, outcome

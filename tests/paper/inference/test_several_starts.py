@@ -53,6 +53,22 @@ def test_growth_that_depends_on_the_last_digit_is_undecided():
     assert verdicts(found).tolist() == [Holds.undecided, Holds.yes]
 
 
+def test_half_of_the_last_window_tells_growth_as_all_of_it_does():
+    """Where it does not tell it, or the margin counts, the last window is run to its end."""
+    generator = np.random.default_rng(6)
+    little_friction = STUDY[0], 0.03, *STUDY[2:]
+    around = np.array(STUDY) * generator.uniform(0.5, 1.5, (8, 4))
+    some = candidates(*around, little_friction)
+    sizes, outcome = some.windows(SCENES["F3"])
+    whole, ends = replace(some, exact=True).windows(SCENES["F3"])
+    grows = growth_margin(whole) > 0.0
+    assert 0 < grows.sum() < grows.size
+    np.testing.assert_array_equal(growth_margin(sizes) > 0.0, grows)
+    np.testing.assert_array_equal(sizes[grows, :-1], whole[grows, :-1])
+    assert (sizes[grows, -1] < whole[grows, -1]).all()
+    np.testing.assert_array_equal(outcome[grows], ends[grows])
+
+
 def test_a_margin_of_zero_holds_no_more_than_a_force_of_zero_is_above_zero():
     margins = np.array([1e-300, 0.0, -1e-300, np.nan])
     found = StatementMargin(margins, np.full(4, int(Outcome.converged)))
