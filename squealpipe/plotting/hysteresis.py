@@ -24,7 +24,7 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
     own_mu = parameter(answer, "mu")
     for friction, line, words in (
         (float(answer.onset_mu), ":", "critical"),
-        (own_mu, "-.", "its own"),
+        (own_mu, "-.", "the structure's own"),
     ):
         if np.isfinite(friction):
             label = f"{words}, μ = {number(friction, 3)}"

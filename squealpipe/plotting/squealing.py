@@ -165,7 +165,10 @@ def draw_shares(axes: Axes, answer: xr.Dataset) -> None:
 def _names(answer: xr.Dataset) -> list[str]:
     """Each attractor by its frequency and kind."""
     kinds = meanings(answer.kind)
-    words = [flag_words(kinds[int(value)]) for value in answer.kind.values]
+    words = [
+        flag_words(kinds[int(value)]).replace("torus", "quasi-periodic")
+        for value in answer.kind.values
+    ]
     return [
         word.replace(" ", "\n")
         if np.isnan(frequency)

@@ -46,7 +46,7 @@ def test_of_hoffmanns_modes_squeal_dies_where_it_begins():
     assert float(answer.mu_dies[0]) == float(answer.onset_mu)
     said = lines(answer)
     assert "turns unstable at mu = 0.7401" in said[-1]
-    assert said[-1].endswith("The noise just above dies there (supercritical).")
+    assert said[-1].endswith("The noise just above it dies there (supercritical).")
 
 
 @pytest.mark.release

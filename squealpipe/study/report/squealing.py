@@ -535,12 +535,12 @@ def _kind(answer: xr.Dataset) -> str:
     """Name the motion that begins at the onset."""
     match OnsetKind(int(answer.onset_kind)):
         case OnsetKind.supercritical:
-            return "The noise just above dies there (supercritical)."
+            return "The noise just above it dies there (supercritical)."
         case OnsetKind.subcritical:
             one = answer.isel(track=answer.track_attractor.values == JUST_ABOVE)
             end = _end_of(one.isel(track=0), float(answer.onset_mu))
-            return f"The noise just above {end} (subcritical)."
-    return "Whether the noise just above lasts below is undetermined."
+            return f"The noise just above it {end} (subcritical)."
+    return "Whether the noise just above it lasts below is undetermined."
 
 
 def _end_of(one: xr.Dataset, critical: float) -> str:
