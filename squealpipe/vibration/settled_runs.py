@@ -121,6 +121,11 @@ class SettledRun:
         return self.verdict is not Verdict.undetermined
 
     @property
+    def sticks_for_good(self) -> bool:
+        """True if a contact has not been seen to slip again: the belt carries it ever farther."""
+        return self.last is not None and bool((self.last.stuck >= ALWAYS).any())
+
+    @property
     def lasts(self) -> bool:
         """True if a motion is known to last, or has at least not lost its events by the horizon.
 
@@ -318,8 +323,7 @@ def _judged(
     run = SettledRun(
         verdict, now, 0.0, shown is Agreement.irregular, difference(*levels)
     )
-    # what sticks for good is carried along by the belt, ever farther: that is no settled motion
-    carried = bool((now.stuck >= ALWAYS).any())
+    carried = run.sticks_for_good  # which is no settled motion
     if verdict is Verdict.hammers:
         return None if carried else run
     if _lost_in_part(now):

@@ -174,6 +174,11 @@ squealing_schema = DatasetSchema(
             "mode",
             optional=True,
         ),
+        "sticks_for_good": whether(
+            "whether a start of 1 % along this mode ends with a contact that sticks for good",
+            "mode",
+            optional=True,
+        ),
         "time_to_squeal": or_nan(
             "time from there until the kinetic energy first reaches half its settled value",
             "s",

@@ -392,6 +392,8 @@ def _of_modes(
             squeals[index] = away.argmin() == index
     unbounded = np.zeros(count, bool)
     unbounded[:pushed] = [run.unbounded for run in settled[:pushed]]
+    stuck = np.zeros(count, bool)
+    stuck[:pushed] = [run.sticks_for_good for run in settled[:pushed]]
     times = np.full(count, np.nan)
     for index, run in enumerate(settled[:pushed]):
         if run.agrees and not run.quiet:
@@ -403,6 +405,7 @@ def _of_modes(
         "ends_in": ends,
         "squeals": squeals,
         **({"grows_without_bound": unbounded} if unbounded.any() else {}),
+        **({"sticks_for_good": stuck} if stuck.any() else {}),
         "time_to_squeal": times,
     }
 

@@ -29,6 +29,11 @@ NAMES = {
 """Words for what is changed of a pad."""
 CHEAPEST = 3
 """Cures that an answer names."""
+CARRIED = (
+    "the belt still carries a sticking contact along, ever farther; friction jams, or the belt is "
+    "very slow"
+)
+"""Words for a contact that sticks for good."""
 NOT_RUN = "not run"
 """Words for what no run has told."""
 
@@ -162,10 +167,7 @@ def _not_settled(answer: xr.Dataset, prefix: str) -> str:
             "contact there is nothing to judge."
         )
     if value("stick_fraction") >= ALWAYS:
-        return (
-            f": after {after} the belt still carries a sticking contact along, ever farther; "
-            "friction jams, or the belt is very slow."
-        )
+        return f": after {after} {CARRIED}."
     told = f": after {after} the motion had not settled"
     if not np.isnan(value("frequency")):
         at = engineering(value("frequency"), "Hz") + _wanders(answer, prefix)

@@ -19,6 +19,7 @@ from squealpipe.structures.schema.squealing import (
     OnsetKind,
 )
 from squealpipe.study.report.answer import (
+    CARRIED,
     contact_kept,
     damping_advice,
     is_shifted,
@@ -100,6 +101,8 @@ def _undetermined(answer: xr.Dataset) -> str:
         return beyond
     if _grows_without_bound(answer, 0):
         return f"{said}: a small push grows {_nothing_limits(answer)}"
+    if "sticks_for_good" in answer and bool(answer.sticks_for_good[0]):
+        return f"{said}: after a small push {CARRIED}."
     return (
         f"{said}: the motion after a small push did not settle, or its kind is "
         f"not clear.{damping_advice(answer)}"
