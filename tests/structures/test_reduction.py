@@ -401,7 +401,7 @@ def test_a_motion_beyond_the_band_is_marked_and_modes_are_named_by_frequency():
         "ends_in": ("mode", [0, 0]),
         "dominant_frequency": ("attractor", [8.5e3]),
         "motion": ("attractor", [int(Verdict.squeals)]),
-        "separated_fraction": ("attractor", [0.0]),
+        "separated_fraction": (("attractor", "contact"), [[0.0]]),
         "stick_fraction": ("attractor", [0.0]),
     }
     told = xr.Dataset(at, {"mode": [2, 17]})
