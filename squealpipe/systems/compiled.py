@@ -102,7 +102,8 @@ class KernelCompiler(_Compiler):  # type: ignore[misc]
             untyped_passes.ReconstructSSA,
             typed_passes.NopythonTypeInference,
             typed_passes.PreLowerStripPhis,
-            typed_passes.IRLegalization,
+            # notes where each variable ends, which counts of references alone need
+            *([typed_passes.IRLegalization] if self.state.flags.nrt else []),
             typed_passes.NativeLowering,
             typed_passes.NoPythonBackend,
         ):
@@ -283,7 +284,9 @@ def _kept(function: Callable[..., Any], folder: str) -> Any:
     numba stores under the path of a function's file, which differs from checkout to checkout: the
     function is given an empty file of the store in its place.
     """
-    compile_ = partial(_numba.njit, nogil=True, error_model="numpy")
+    compile_ = partial(
+        _numba.njit, nogil=True, error_model="numpy", no_cfunc_wrapper=True
+    )
     previous = _settings.CACHE_DIR
     _settings.CACHE_DIR = folder
     try:
