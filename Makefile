@@ -96,7 +96,7 @@ $(STUDY): requirements.lock requirements-pip.lock pyproject.toml
 	$(BIN)/python -m compileall -q squealpipe
 	touch $@
 
-# 36 s of CPU time, which several first jobs or tests would otherwise spend at once; and byte code of what jobs
+# 30 s of CPU time, which several first jobs or tests would otherwise spend at once; and byte code of what jobs
 # import, for those who may not write it
 COMPILE_LOOPS := $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli; \
   from squealpipe.study.compiled_loops import compile_loops; compile_loops()"
