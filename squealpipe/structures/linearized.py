@@ -26,24 +26,20 @@ def pencil_about(
     """The pencil of small motions about steady sliding, with the damping of single modes."""
     acting = acting_directions(structure, state.closed, state.drag)
     falling = state.force * state.slope
-    damping = sp.csr_array(structure.damping)
+    damping = structure.damping
     if falling.any():
         tangential = sp.csr_array(structure.tangentials * falling)
-        damping = damping + tangential @ sp.csr_array(structure.tangentials).T
+        damping = _tidy(damping + tangential @ sp.csr_array(structure.tangentials).T)
     if structure.transversals.any():
         # friction μN turns with the sliding velocity: across it, μN times its angle v/|V|
         speeds = np.abs(structure.speeds * state.belt_speed)
         turning = state.force * np.abs(state.drag) / speeds
         across = sp.csr_array(structure.transversals)
-        damping = damping + across * turning @ across.T
+        damping = _tidy(damping + across * turning @ across.T)
     springs = contact_stiffness(structure, state.stiffness, acting)
     stiffness = structure.stiffness + springs
     return Pencil(
-        _tidy(structure.mass),
-        _tidy(damping),
-        _tidy(stiffness),
-        modal,
-        _uncertain(structure, state),
+        structure.mass, damping, _tidy(stiffness), modal, _uncertain(structure, state)
     )
 
 

@@ -49,7 +49,6 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
                 "time; use modal_damping or a damping matrix"
             )
         matrix = matrix.real
-    matrix = matrix.astype(float)
     if not np.isfinite(matrix.data).all():
         place = np.flatnonzero(~np.isfinite(matrix.data))[0]
         row = int(np.searchsorted(matrix.indptr, place, side="right")) - 1
@@ -63,15 +62,15 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
     return matrix
 
 
-def sum_of_products(left: np.ndarray, right: np.ndarray) -> sp.csr_array:
-    """Return Σ aᵢ bᵢᵀ of the columns of two arrays, (n, k) each, sparse."""
+def sum_of_products(left: np.ndarray, right: np.ndarray) -> Any:
+    """Return Σ aᵢ bᵢᵀ of the columns of two arrays, (n, k) each, sparse if it is large."""
     few = (
         100  # rows of which an array is made in a tenth of the time of a sparse product
     )
     if len(left) <= few:
         # not by BLAS, whose round-off depends on the processor, and with it which of the modes
         # that have met is which (test_onset, seed 77)
-        return sp.csr_array(np.einsum("ik,jk->ij", left, right))
+        return np.einsum("ik,jk->ij", left, right)
     return sp.csr_array(sp.csr_array(left) @ sp.csr_array(right).T)
 
 
@@ -86,20 +85,23 @@ def checked_mass(
     Raises:
         ValueError: it is not; names degrees of freedom without mass.
     """
-    difference = sp.coo_array(abs(mass - mass.T))
-    root = np.sqrt(np.abs(mass.diagonal()))
-    # a mass this asymmetric, over the geometric mean of both diagonals, is so by round-off
-    if (difference.data > 1e-10 * root[difference.row] * root[difference.col]).any():
-        half = sp.triu(mass, 1).nnz == 0 or sp.tril(mass, -1).nnz == 0
-        raise ValueError(
-            "mass is not symmetric"
-            + (
-                ": only one triangle is there; mirror the other, A + A.T − diag(A)"
-                if half
-                else "; a symmetric one is needed"
+    difference = mass - mass.T
+    if difference.nnz:
+        difference = sp.coo_array(difference)
+        root = np.sqrt(np.abs(mass.diagonal()))
+        # a mass this asymmetric, over the geometric mean of both diagonals, is so by round-off
+        allowed = 1e-10 * root[difference.row] * root[difference.col]
+        if (np.abs(difference.data) > allowed).any():
+            half = sp.triu(mass, 1).nnz == 0 or sp.tril(mass, -1).nnz == 0
+            raise ValueError(
+                "mass is not symmetric"
+                + (
+                    ": only one triangle is there; mirror the other, A + A.T − diag(A)"
+                    if half
+                    else "; a symmetric one is needed"
+                )
             )
-        )
-    mass = sp.csr_array(0.5 * (mass + mass.T))
+        mass = sp.csr_array(0.5 * (mass + mass.T))
     if names is None or len(names) != mass.shape[0]:
         names, counted = list(map(str, range(mass.shape[0]))), ", counted from 0"
     else:

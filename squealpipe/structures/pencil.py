@@ -195,7 +195,8 @@ class Extended:
         if isinstance(matrix, np.ndarray):
             # in a fifth of the time that it takes to make sparse rows of it
             places, self.indices = matrix.nonzero()
-            self.filled, self.starts = np.unique(places, return_index=True)
+            self.starts = np.flatnonzero(np.diff(places, prepend=-1))
+            self.filled = places[self.starts]
             data = matrix[places, self.indices]
         else:
             rows = sp.csr_array(matrix)
