@@ -78,10 +78,11 @@ def follow_boundaries(evaluate: Evaluate, grid: RefinedGrid) -> None:
 
 def _changes(labels: np.ndarray) -> np.ndarray:
     """Points with another label next to them."""
-    return np.asarray(
-        scipy.ndimage.maximum_filter(labels, 3)
-        != scipy.ndimage.minimum_filter(labels, 3)
-    )
+    changes, around = np.zeros(labels.shape, bool), np.pad(labels, 1, "edge")
+    rows, columns = labels.shape
+    for row, column in np.ndindex(3, 3):
+        changes |= around[row : row + rows, column : column + columns] != labels
+    return changes
 
 
 def _refined(values: np.ndarray, between: object) -> np.ndarray:
