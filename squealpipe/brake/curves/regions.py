@@ -115,14 +115,16 @@ def loops_of(lines: ZeroLines, *, positive: bool, flat: float = 1e-6) -> list[Lo
     chords = lines.chords if positive else lines.chords[:, ::-1]
     place = np.concatenate([lines.place, SQUARE_CORNERS])
     sign = -1.0 if positive else 1.0
-    number = {(i, j): k for k, (i, j) in enumerate(chords)}
+    number = {(i, j): k for k, (i, j) in enumerate(chords.tolist())}
     loops = []
     for chain in chains_of(np.concatenate([chords, _border(lines, positive)])):
         pairs = list(pairwise(chain))
         on = [number[pair] for pair in pairs if pair in number]
         none = np.empty((0, 2))
         line = [
-            each for i, j in pairs for each in (place[[i]], between.get((i, j), none))
+            each
+            for i, j in pairs
+            for each in (place[i : i + 1], between.get((i, j), none))
         ]
         x, y = place[chain].T
         area = 0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) + sign * bulge[on].sum()
