@@ -7,6 +7,7 @@ or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not cou
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -35,6 +36,7 @@ def numbers(text):
     return found
 
 
+@cache
 def homes():
     """Equation → ``path: name`` of its homes."""
     found = defaultdict(set)
