@@ -47,7 +47,7 @@ def test_hooks_watch_files_that_exist():
 INSIDE_FUNCTIONS = {
     "squealpipe/systems/system.py": "cycles load scipy.interpolate, which runs do not need",
     "squealpipe/structures/structure.py": "runs load the compiler, which modes do not need",
-    "squealpipe/study/forked_jobs.py": "a command of a job imports nothing",
+    "squealpipe/study/forked_jobs.py": "it imports once it looks for no garbage",
 }
 """Modules that may import parts of the package inside functions; the command line may, too: a
 command loads what it needs, so that ``--help`` is quick."""

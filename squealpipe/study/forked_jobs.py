@@ -1,7 +1,7 @@
 """Start the jobs of a study from one process that has imported the libraries.
 
 Idea: NumPy, SciPy, xarray, numba, Matplotlib and the modules of this package that most jobs share
-take 2.5 s of CPU time to import; a study has forty jobs. One process imports them once, and each
+take 2 s of CPU time to import; a study has forty jobs. One process imports them once, and each
 job is a fork of it. Snakemake starts jobs as before, by a command; a prefix of the command hands it
 to that process, lends it the streams and the environment of the command, and ends as the job ends.
 
@@ -16,7 +16,6 @@ Cost: 20 ms a job, and once the imports.
 
 import atexit
 import contextlib
-import json
 import os
 import shlex
 import signal
@@ -26,8 +25,7 @@ import time
 from importlib import import_module
 from typing import Any
 
-HEAD = 8
-"""Bytes before a job's description, which state its length."""
+from squealpipe.study import job_command
 
 
 def start_server() -> str:
@@ -54,7 +52,7 @@ def start_server() -> str:
     listening.listen(128)
     number = str(listening.fileno())
     server = subprocess.Popen(
-        [sys.executable, "-P", __file__, "serve", number],
+        [sys.executable, "-P", __file__, number],
         stdin=subprocess.PIPE,
         pass_fds=[listening.fileno()],
     )
@@ -68,32 +66,8 @@ def start_server() -> str:
 
     atexit.register(end)
     # isolated and without site packages: 10 ms
-    words = [sys.executable, "-I", "-S", __file__, "run", address]
+    words = [sys.executable, "-I", "-S", job_command.__file__, address]
     return f"exec {shlex.join(words)} "
-
-
-def run(address: str, *command: str) -> None:
-    """Have a command of Python run by the server, and end as it ends."""
-    server = socket.socket(socket.AF_UNIX)
-    try:
-        server.connect(address)
-    except OSError:
-        os.execv(command[0], command)  # noqa: S606 (it has come from a shell)
-    signal.signal(
-        signal.SIGINT, signal.SIG_IGN
-    )  # the job gets it, too, and says how it ends
-    job = {"script": command[1], "folder": os.getcwd(), "environment": dict(os.environ)}  # noqa: PTH109
-    content = json.dumps(job).encode()
-    with contextlib.suppress(BrokenPipeError):
-        socket.send_fds(server, [len(content).to_bytes(HEAD, "big")], [0, 1, 2])
-        server.sendall(content)
-    answer = server.recv(1024)
-    code = json.loads(answer) if answer else 1
-    if code < 0:  # a signal ended it
-        if -code != signal.SIGKILL:
-            signal.signal(-code, signal.SIG_DFL)
-        os.kill(os.getpid(), -code)
-    sys.exit(code)
 
 
 def _import_libraries() -> None:
@@ -179,13 +153,20 @@ class _Server:
     def _accept(self) -> dict[str, Any] | None:
         """Fork a job; return it in the fork, None in the server."""
         command, _ = self.listening.accept()
-        head, streams, _, _ = socket.recv_fds(command, HEAD, 3)
+        head, streams, _, _ = socket.recv_fds(command, job_command.HEAD, 3)
         with command.makefile("rb") as reading:
             content = reading.read(int.from_bytes(head, "big"))
         number = os.fork() if content else 0
         if content and number == 0:
             self._leave()
-            return {**json.loads(content), "streams": streams}
+            script, folder, *variables = os.fsdecode(content).split("\0")
+            environment = dict(variable.split("=", 1) for variable in variables)
+            return {
+                "script": script,
+                "folder": folder,
+                "environment": environment,
+                "streams": streams,
+            }
         for stream in streams:
             os.close(stream)
         if content:
@@ -244,13 +225,15 @@ def serve(listening: str) -> None:
     """Import the libraries, and fork jobs until Snakemake ends."""
     import gc
 
+    # among what is imported there is little garbage: to look for it takes a fifth of the time
+    gc.disable()
     done: list[bool] = []
     atexit.register(_end_at_once, done)  # the first is called last
     server = _Server(socket.socket(fileno=int(listening)))
     with contextlib.suppress(Exception):  # jobs tell what is wrong with a library
         _import_libraries()
-    gc.collect()
     gc.freeze()  # a job need not look through all that is loaded
+    gc.enable()
     gc.set_threshold(200_000)  # nor often through what it makes
     parent = os.getpid()
     job = server.serve()
@@ -310,4 +293,4 @@ def _become(job: dict[str, Any], server: int) -> None:
 
 
 if __name__ == "__main__":
-    (run if sys.argv[1] == "run" else serve)(*sys.argv[2:])
+    serve(*sys.argv[1:])
