@@ -345,3 +345,17 @@ def test_double_frequencies_of_a_large_structure_do_not_grow():
     # each frequency of the chain is there twice
     pairs = modes.frequency.values.reshape(3, 2)
     assert pairs[:, 0] == pytest.approx(pairs[:, 1], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("corner", "message"),
+    [(0.2, "; a symmetric one is needed"), (0.0, "only one triangle is there")],
+)
+def test_a_mass_that_is_not_symmetric_is_refused(corner, message):
+    with pytest.raises(ValueError, match=message):
+        Structure([[2.0, 0.1], [corner, 3.0]], np.eye(2))
+
+
+def test_a_mass_that_round_off_made_asymmetric_is_made_symmetric():
+    mass = Structure([[2.0, 0.1], [0.1 + 1e-14, 3.0]], np.eye(2)).mass.toarray()
+    assert mass[0, 1] == mass[1, 0] == pytest.approx(0.1, rel=1e-12)
