@@ -85,7 +85,7 @@ def test_make_gives_snakemake_a_cache_where_there_is_no_home(tmp_path):
 
 
 def test_make_help_tells_every_target():
-    shown = run(["make", "help"], cwd=ROOT).stdout
+    shown = run(["make", "--no-print-directory", "help"], cwd=ROOT).stdout
     _, targets = (ROOT / "Makefile").read_text("utf-8").split(".PHONY: ")
     told = {line.split()[1] for line in shown.splitlines()}
     assert told == set(targets.splitlines()[0].split())
