@@ -3,8 +3,8 @@
 Modes are followed along the speed as they are along friction (:mod:`.numbering`), with the matrices
 and the steady sliding of each speed, and the first speed at which growth passes zero is located as
 a critical friction is (:mod:`.onset`). A mode may pass zero twice between two speeds: where the
-tangents of its growth at both, by exact derivatives, meet beyond zero a speed is added between. On
-the way the speed is divided by the largest, so that one tolerance serves for m/s and rad/s.
+tangents of its growth at both meet beyond zero a speed is added between. On the way the speed is
+divided by the largest, so that one tolerance serves for m/s and rad/s.
 """
 
 from dataclasses import dataclass, field
@@ -187,22 +187,12 @@ def _slopes(
         np.stack([getattr(pair, name) for pair in pairs], axis=1)
         for name in ("right", "left")
     )
-
-    def forms(pencil: Pencil) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        damped = pencil.damping @ right
-        if pencil.modal is not None:
-            damped = damped + pencil.modal.product(right)
-        products = pencil.mass @ right, damped, pencil.stiffness @ right
-        mass, damping, stiffness = (
-            np.sum(left.conj() * each, axis=0) for each in products
-        )
-        return mass, damping, stiffness
-
-    mass, damping, stiffness = forms(here)
-    _, other_damping, other_stiffness = forms(there)
-    change = s * (other_damping - damping) + other_stiffness - stiffness
+    damping = there.rate(0.0, right) - here.rate(0.0, right)
+    stiffness = there.stiffness @ right - here.stiffness @ right
+    change = np.sum(left.conj() * (s * damping + stiffness), axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray((-change / (2.0 * s * mass + damping)).real / step)
+        rate = np.sum(left.conj() * here.rate(s, right), axis=0)
+        return np.asarray((-change / rate).real / step)
 
 
 def _first_change(along: Way, number: int, unit: float) -> CriticalSpeed:

@@ -64,9 +64,8 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
 
 def sum_of_products(left: np.ndarray, right: np.ndarray) -> Any:
     """Return Σ aᵢ bᵢᵀ of the columns of two arrays, (n, k) each, sparse if it is large."""
-    few = (
-        100  # rows of which an array is made in a tenth of the time of a sparse product
-    )
+    # rows of which an array is made in a tenth of the time of a sparse product
+    few = 100
     if len(left) <= few:
         # not by BLAS, whose round-off depends on the processor, and with it which of the modes
         # that have met is which (test_onset, seed 77)
