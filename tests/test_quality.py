@@ -108,3 +108,17 @@ def test_no_module_takes_the_name_of_what_its_package_defines():
         }
         modules = {each.stem for each in path.parent.iterdir()}
         assert not defined & modules, path
+
+
+def test_docstrings_open_with_a_verb_or_a_noun():
+    opens = re.compile(
+        r'^ *"""(?:Of|What|Which|Whether|Where|How|When|Why|The same)\b.*', re.MULTILINE
+    )
+    texts = {
+        path: path.read_text(encoding="utf-8")
+        for path in [*ROOT.glob("squealpipe/**/*.py"), *ROOT.glob("workflow/**/*.py")]
+    }
+    assert len(texts) > 500
+    assert [
+        (p, each) for p, text in texts.items() for each in opens.findall(text)
+    ] == []

@@ -226,7 +226,7 @@ def failed(data: Mapping[str, Any], flag: str, calls: int = 0) -> Score:
 
 
 def _stated(problem: Problem) -> dict[str, str]:
-    """What a solver may not change in the copy of the problem that it is given, as texts."""
+    """Return, as texts, the fields that a solver may not change in its copy of the problem."""
     names = [
         "start",
         "parameters",

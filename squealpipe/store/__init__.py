@@ -6,6 +6,6 @@ Its names are loaded on first use: the workflow asks for keys of files and needs
 import lazy_loader
 
 INPUT_FILES = ("netcdf.py", "provenance.py", "whole_files.py")
-"""What is imported by name: a result depends on them all the same."""
+"""Files that are imported by name: a result depends on them all the same."""
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -12,6 +12,6 @@ INPUT_FILES = (
     "shipped_pad.py",
     "structure.py",
 )
-"""What is imported by name: a result depends on them all the same."""
+"""Files that are imported by name: a result depends on them all the same."""
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

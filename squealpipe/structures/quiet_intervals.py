@@ -48,8 +48,7 @@ class Following:
     """Growth over the largest eigenvalue up to which a mode does not grow. Ten times as much: modes
     that grow so slowly count as stable; a tenth: round-off counts as growth."""
     undamped: float = 1e-9
-    """The same of structures without damping, whose modes lose half of their digits as they merge.
-    """
+    """Such a growth without damping, where modes lose half of their digits as they merge."""
     difference: float = 1e-3
     """Change of the parameter, over the first step, whose effect on the matrices gives their
     slopes, with errors of its square. Twice as much: 4 times the error; half: more round-off."""

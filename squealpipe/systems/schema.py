@@ -29,7 +29,7 @@ from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
 UNIT, GRID = "<unit>", "<grid>"
 CYCLE: dict[str, Any] = {"rtol": 1e-7, "atol": 1e-9}
-"""To so many digits two ways to a cycle lead to the same one."""
+"""Tolerances within which two ways to a cycle lead to the same one."""
 _residual = or_nan(
     "largest residual of the equations, without units", rtol=1.0, atol=1e-8
 )

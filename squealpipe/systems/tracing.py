@@ -455,7 +455,7 @@ class TracedSystem(Definition):
 
     @cached_property
     def starts(self) -> Starts:
-        """In which regime a run starts."""
+        """Regimes in which runs start."""
         return Starts(self.traced, self.composition)
 
     def first_regimes(

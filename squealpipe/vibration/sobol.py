@@ -22,7 +22,7 @@ class SobolRules:
     replicates: int = 8
     """Independent scramblings: few cost evenness little, and Student's t still has 7 degrees."""
     least_events: int = 30
-    """With fewer cases, or fewer non-cases, in the sample no index is given."""
+    """No index is given of a sample with fewer cases, or fewer non-cases."""
     widest: float = 0.05
     """Half-width of an index's 95 % interval above which it is not given."""
 

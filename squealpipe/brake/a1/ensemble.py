@@ -93,7 +93,7 @@ class Ensemble:
     """Before ``t_late``; those that are late from there on."""
     late_max_x, late_max_vx = _largest("x", "late_"), _largest("vx", "late_")
     sample_separations = _count(Event.separation, "sample_counts")
-    """What has added up at the samples, with ``sums``; likewise the following."""
+    """Sums up to each sample, with ``sums``; likewise the following."""
     sample_contacts = _count(Event.contact, "sample_counts")
     sample_separated_time = _spent(Regime.separated, "sample_durations")
     sample_stick_time = _spent(Regime.stick, "sample_durations")

@@ -31,7 +31,7 @@ class SlidingSearch:
     """Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
     round-off of an undamped pair. Ten times as much hides slow growth."""
     grows_with_damping: float = 1e-13
-    """The same where a force depends on velocity, so that no root is on the axis by symmetry."""
+    """Such a rate where a force depends on velocity, so that no root is on the axis by symmetry."""
     first_steps: int = 4
     """Newton steps while friction is raised from zero. Half as many may jump to another
     equilibrium."""
@@ -141,7 +141,7 @@ class Sliding:
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """Why it is unstable."""
+        """Mechanism by which it is unstable; none where it is stable."""
         if not self.is_unstable:
             return Mechanism.none
         level = _acceleration(self.design, 1.0)

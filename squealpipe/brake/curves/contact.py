@@ -59,7 +59,7 @@ class Square:
         self.faster: list[tuple[Vector, Vector]] = []
         """Places where the mass was once as fast as the belt, and the reserves there."""
         self.sticks = False
-        """Whether a mass was as fast as the belt before it lost contact."""
+        """True if a mass was as fast as the belt before it lost contact."""
         self.low = np.array([axis[0] for axis in axes.values()])
         self.width = np.array([axis[-1] - axis[0] for axis in axes.values()])
 

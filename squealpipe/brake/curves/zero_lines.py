@@ -49,8 +49,8 @@ class ZeroLineSettings:
     most_divisions: int = 30
     """A chord is divided in two up to so many times."""
     most_points: int = 25_000
-    """Where motions last long a line may have corners without end: division stops at so many
-    points, and the stored error says what is left."""
+    """Division stops at so many points, since a line of long motions may have corners without end;
+    the stored error says what is left."""
     closed: float = 1e-12
     """A zero is enclosed to this share of the line that it is searched on: round-off."""
     ends_checked: int = 5
@@ -83,8 +83,8 @@ class ZeroLineSettings:
     """Distances across a chord, over its length, between which a zero is searched where the
     tangents predict none."""
     along_tangents: float = 0.6
-    """Where two regions touch, both edges are followed along their tangents for this share of the
-    way to the meeting ..."""
+    """Both edges of regions that touch are followed along their tangents for this share of the way
+    to the meeting ..."""
     across_tangents: float = 0.06
     """... and the line is searched for across them within this share of that way. Doubled, another
     line might be found."""

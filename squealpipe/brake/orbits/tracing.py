@@ -35,7 +35,7 @@ from squealpipe.systems.progress import report
 
 Vector = NDArray[np.float64]
 Place = Callable[[], Orbit | None]
-"""From a place on a branch to the orbit there; None where Newton's method fails."""
+"""Function of a place on a branch: the orbit there; None where Newton's method fails."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ limits = TracingLimits()
 
 
 class TraceEnd(Enum):
-    """Why a trace ended, in the words of ``schema.Outcome``."""
+    """Reason why a trace ended, in the words of ``schema.Outcome``."""
 
     amplitude_reached = auto()
     retraced = auto()

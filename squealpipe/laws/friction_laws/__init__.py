@@ -58,7 +58,7 @@ FALLING = [name for name, law in LAWS.items() if getattr(law, "FALLING", False)]
 
 
 def _is_complex(speed: Any) -> bool:
-    """Without NumPy, whose import the command line's help need not wait for."""
+    """Tell whether a number is complex, without NumPy, so that ``--help`` does not load it."""
     dtype = getattr(speed, "dtype", None)
     return isinstance(speed, complex) or getattr(dtype, "kind", None) == "c"
 

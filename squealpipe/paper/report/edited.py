@@ -60,7 +60,7 @@ def what_changed(changed: Sequence[tuple[str, Any, Any]]) -> str:
 
 
 def undecided(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
-    """Why statements were not decided: each reason with the statements that it concerns."""
+    """List the reasons why statements were not decided, each with the statements it concerns."""
     reasons: dict[str, list[str]] = {}
     for row in statements:
         if row["verdict"] == ClaimVerdict.cannot_be_decided.words:

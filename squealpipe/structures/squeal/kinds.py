@@ -61,8 +61,8 @@ class KindRules:
     nearly_repeated: float = 1e-3
     """Largest such difference of a motion whose cycle is worth a search."""
     slowly_neared: float = 1e-2
-    """The same where neighbours draw nearer: what is left of the way to a cycle. A tenth: that
-    cycle is taken for a torus. Ten times as much: tori are searched for cycles, for minutes."""
+    """Such a difference where neighbours draw nearer: what is left of the way to a cycle. A tenth:
+    that cycle is taken for a torus. Ten times: tori are searched for cycles, for minutes."""
     cycle_periods: int = 31
     """Periods of a cycle that are run for its statistics."""
     cycle_samples: int = 2048

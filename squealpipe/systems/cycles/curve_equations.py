@@ -27,7 +27,7 @@ from squealpipe.systems.cycles.solution import Cycle
 
 _no_margin = Margin(MarginKind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
-"""By which angle a disturbance is turned in a period; NaN where it is an unknown."""
+"""Angle by which a disturbance is turned in a period; NaN where it is an unknown."""
 
 
 Test = Callable[[Vector], float]

@@ -29,7 +29,7 @@ from squealpipe.systems.cycles.line import branch_steps, precise_steps
 from squealpipe.systems.cycles.solution import Cycle
 
 ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
-"""Why a curve ends where the order of the events does not change."""
+"""Reasons why a curve ends where the order of the events does not change."""
 
 
 @dataclass(frozen=True)

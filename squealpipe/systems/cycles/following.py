@@ -57,8 +57,8 @@ class BranchFollowing:
     fold_at_change: float = 1e-5
     """A fold closer than this before a change of the events is that change."""
     vertical: float = 1e-9
-    """Where the parameter changes by less than this over the cycle, the branch is a family of
-    cycles at one value."""
+    """A branch whose parameter changes by less than this over the cycle is a family of cycles at
+    one value."""
     homoclinic: float = 1e-8
     """Relative distance of the parameter from a homoclinic orbit within which round-off decides
     the multipliers."""

@@ -95,7 +95,7 @@ class Trail:
         return near and point.label == Label.fold
 
     def reason(self) -> Outcome:
-        """Why no step leads on."""
+        """Reason why no step leads on."""
         cycle = self.points[-1].cycle
         if self.has_shrunk(cycle):
             return Outcome.equilibrium

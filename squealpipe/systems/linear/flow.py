@@ -310,7 +310,7 @@ class LinearFlow(Flow):
 
     @property
     def is_affine(self) -> bool:
-        """Whether friction depends on no speed."""
+        """True if friction depends on no speed."""
         return not self.matrices.curved
 
     def _forces(self, values: Mapping[str, Any], regime: int, state: Any) -> Forces:

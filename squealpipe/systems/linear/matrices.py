@@ -174,7 +174,7 @@ class ContactMatrices:
 
     @property
     def curved(self) -> bool:
-        """Whether friction depends on the sliding speed somewhere."""
+        """True if the friction of some contact depends on the sliding speed."""
         return bool((self.laws != friction_number.coulomb).any())
 
     @property

@@ -80,7 +80,7 @@ KINDS = ("contact", "stick", "reversal", "separation", "slip", "knot")
 
 
 class Condition(NamedTuple):
-    """What decides between the regimes that a switch may enter, ≥ 0 where it holds.
+    """Quantity that decides between the regimes a switch may enter; the condition holds if ≥ 0.
 
     Attributes:
         knot: sliding speed beyond which it slips in a piece of friction, over the reference; None:
@@ -93,7 +93,7 @@ class Condition(NamedTuple):
 
     @property
     def varies(self) -> bool:
-        """Whether it depends on the state."""
+        """True if it depends on the state."""
         return self.knot is None or self.direction != 0.0
 
 
@@ -124,7 +124,7 @@ class ContactSwitch(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Numbering:
-    """What the engine reads of contacts, in the terms of a traced system.
+    """Contacts as the engine reads them, in the terms of a traced system.
 
     Args:
         names: of the contacts.
@@ -165,12 +165,12 @@ class Numbering:
 
     @property
     def has_tables(self) -> bool:
-        """Whether the friction of some contact has several pieces."""
+        """True if the friction of some contact has several pieces."""
         return max(map(len, self.pieces)) > 1
 
     @property
     def has_presses(self) -> bool:
-        """Whether the force of some contact is a table of the compression."""
+        """True if the force of some contact is a table of the compression."""
         return max(map(len, self.presses)) > 1
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Whether a step may be believed: what it led to, compared with what its series say.
+"""Test of a step before it is believed: rates and surfaces at its end beside those of its series.
 
 The length of a step comes from the last orders of its series, which may show nothing of what it
 leads into. At its end rates, surfaces and outputs are computed from the state: where they differ
@@ -105,7 +105,7 @@ def end_stalled(t: Any, m: Any, c: Any, busy: int) -> int:
 
 @part
 def stands_still(t: Any, m: Any, c: Any, lane: int) -> bool:
-    """Whether a lane runs on after a step that has moved no variable; the next one is the same."""
+    """Tell whether a running lane stands still: no variable moved, nor will one move next."""
     hit, outcome = (
         m.integers[layout.integers.hit, lane],
         m.integers[layout.integers.outcome, lane],
@@ -153,7 +153,7 @@ def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
 
 @part
 def _jumps(t: Any, m: Any, c: Any, lane: int) -> bool:
-    """Whether a rate jumps in a lane's step, which leads across the root of a base."""
+    """Tell whether a rate jumps in a lane's step, which leads across the root of a base."""
     reach, most = m.rows[layout.numbers.reach, lane], 0.0
     for variable in range(t.n_states):
         if m.steep[variable]:
@@ -167,7 +167,7 @@ def _jumps(t: Any, m: Any, c: Any, lane: int) -> bool:
 
 @part
 def _event_gap(t: Any, m: Any, c: Any, lane: int, event: int) -> float:
-    """Of a surface or an output, whose terms are in the scratch."""
+    """Difference of a surface or output, over the tolerated one; its terms are in the scratch."""
     index, terms = t.n_variables + event, m.scratch[2, 3 * event + 1]
     exact = m.exact[t.n_states + event, lane]
     size = max(abs(c[index, 0, lane]), abs(exact))
@@ -186,7 +186,7 @@ def _event_gap(t: Any, m: Any, c: Any, lane: int, event: int) -> float:
 
 @part
 def believe_or_halve(t: Any, m: Any, c: Any, lane: int) -> bool:
-    """Whether a lane's step stands after all; else it is halved, or its run ends."""
+    """Return whether a lane's step stands after all; else halve it or end the run."""
     rows, integers = m.rows, m.integers
     gap = _largest_gap(t, m, c, lane)
     # the difference that a jump leaves is halved with the step, as that of round-off is

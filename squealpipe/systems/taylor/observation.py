@@ -229,7 +229,7 @@ def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
 
 @part
 def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> None:
-    """What has added up: growth (to the last step's end), times in regimes, half turns, events."""
+    """Sum up so far: growth (to the last step's end), times in regimes, half turns, events."""
     job, rows = m.integers[layout.integers.job, lane], m.rows
     sums[0] = m.summary[job, 0] + log_norm(
         t, m, lane, first_time - 2 * t.n_tracked - t.n_states
@@ -266,7 +266,7 @@ def clear_extremes(m: Any, lane: int, index: int, first_extreme: int) -> None:
 
 @part
 def begin_late(t: Any, m: Any, lane: int, first_extreme: int) -> None:
-    """From here on extremes are those of the late part."""
+    """Keep the extremes of the early part, and begin those of the late part."""
     job = m.integers[layout.integers.job, lane]
     for index in range(t.n_tracked):
         for each in range(2):

@@ -42,7 +42,7 @@ class End(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """Which crossings of zero count.
+    """Crossings of zero that count.
 
     Attributes:
         falls, rises: whether those from above, and those from below.
@@ -107,7 +107,7 @@ def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> 
 def _halved(
     coefficients: Any, variable: int, lane: int, first: float, end: float, side: float
 ) -> Any:
-    """Whether Newton's method leaves the bracket at a time and at three halfway on to its end.
+    """Tell whether Newton's method leaves the bracket at a time and at three halfway on to its end.
 
     Returns the last of these times as well, which is then the other end of the bracket.
     """
@@ -135,7 +135,7 @@ def _halved(
 
 @part
 def _leaves(time: float, value: float, slope: float, end: float, side: float) -> bool:
-    """Whether Newton's method leads from a time on a side past an end, or away from it."""
+    """Tell whether Newton's method leads from a time on a side past an end, or away from it."""
     following, middle = time - value / slope, 0.5 * (time + end)
     outside = (following <= min(time, end)) | (following >= max(time, end))
     goes_on = (abs(middle - time) > 2.0**-53 * abs(time)) & (middle != end)
@@ -144,7 +144,7 @@ def _leaves(time: float, value: float, slope: float, end: float, side: float) ->
 
 @part
 def bounds_of(coefficients: Any, variable: int, lane: int, step: float) -> Any:
-    """Over the step: a bound of the third derivative, and the size below which round-off hides it.
+    """Bound of the third derivative over the step, and the size below which round-off hides it.
 
     Both in one loop, in which neither waits for the other.
     """
@@ -164,7 +164,7 @@ def bounds_of(coefficients: Any, variable: int, lane: int, step: float) -> Any:
 def is_hidden(
     coefficients: Any, variable: int, lane: int, step: float, root: float, floor: float
 ) -> Any:
-    """Whether round-off hides where a root is, as it hides that of (x − 1)⁵ multiplied out.
+    """Tell whether round-off hides where a root is, as it hides that of (x − 1)⁵ multiplied out.
 
     What is below ``floor`` is round-off. Of two roots close together each is clear on one side.
     """
@@ -236,7 +236,7 @@ def first_root(
 def _at_the_end(
     step: float, value: float, floor: float, band: float, side: float
 ) -> Any:
-    """What :func:`first_root` returns if round-off has hidden it since ``band`` (side not 0)."""
+    """Result of :func:`first_root` if round-off has hidden a root since ``band`` (side not 0)."""
     if side != 0.0 and abs(value) <= floor:
         return root_search.no_root, band
     return 0.5 * (band + step) if side * value < 0.0 else root_search.no_root, step
@@ -244,7 +244,7 @@ def _at_the_end(
 
 @part
 def _agree(a: float, b: float) -> Any:
-    """Whether both are positive, or both negative."""
+    """Tell whether both are positive, or both negative."""
     return (a > 0.0 and b > 0.0) or (a < 0.0 and b < 0.0)
 
 
@@ -252,7 +252,7 @@ def _agree(a: float, b: float) -> Any:
 def _look(
     coefficients: Any, variable: int, lane: int, ends: Any, side: float, third: float
 ) -> Any:
-    """Whether an interval between two ends is decided, and its first root or ``no_root``."""
+    """Tell whether an interval between two ends is decided; its first root or ``no_root``."""
     left, p0, s0, b0 = ends[0]
     right, p1, s1, b1 = ends[1]
     width = right - left
@@ -373,7 +373,10 @@ def first_crossing(
 def _leaves_zero(
     coefficients: Any, variable: int, lane: int, step: float, noise: float, drift: float
 ) -> Any:
-    """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
+    """Time at which a polynomial that starts from zero first differs from it, and its value there.
+
+    The value is 0, and the time the step's end, if it never does.
+    """
     time = step * root_search.finest_interval
     while 0.0 < time <= step:
         value, _, _ = evaluate_twice(coefficients, variable, lane, time)

@@ -41,12 +41,12 @@ class SwitchSymbols:
 
     @cached_property
     def has_one_reset(self) -> bool:
-        """Whether states jump alike, whatever regime is entered."""
+        """True if states jump alike, whatever regime is entered."""
         first, *others = self.resets.values()
         return all(each == first for each in others)
 
     def changes_nothing_in(self, regime: int) -> bool:
-        """Whether it keeps the regime and the state, and only marks an event."""
+        """Tell whether it keeps the regime and the state, and only marks an event."""
         return {each for each, _, _ in self.targets} == {regime} and not self.after
 
 
@@ -79,7 +79,7 @@ class ScalarSource:
         regime: str = "",
         roots: Sequence[Symbol] = (),
     ) -> Writer:
-        """For some roots; with ``regime``, constants are those kept at this address."""
+        """Make a writer for some roots; with ``regime``, constants are those at this address."""
 
         def load(node: Symbol) -> str:
             if node.kind == "variable":

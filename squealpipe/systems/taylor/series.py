@@ -544,7 +544,7 @@ def verify_source(system: HybridSystem) -> str:
 
 
 def _levers(node: Symbol) -> tuple[int, ...]:
-    """What decides the series c₁ A₁ + c₂ A₂ of a joined node."""
+    """Identity of the series c₁ A₁ + c₂ A₂ of a joined node: its arguments, by ``id``."""
     return tuple(id(node.arguments[i]) for i in (0, 1, 3, 4))
 
 
@@ -715,7 +715,7 @@ def _linear(node: Symbol, name: Name) -> str:
 
 
 def _is_sum(node: Symbol) -> bool:
-    """Whether each order of a node is a sum over all lower ones."""
+    """Tell whether each order of a node is a sum over all lower ones."""
     if node.kind in {"**", "joined"} or node.kind in FUNCTIONS:
         return node.varies
     return node.kind == "*" and all(each.varies for each in node.arguments)

@@ -222,7 +222,7 @@ load: Any = _intrinsic(lanes, (types.intp,), _load)
 store: Any = _intrinsic(types.void, (types.intp, lanes), _store)
 """Write a row to an address."""
 splat: Any = _intrinsic(lanes, (types.float64,), _splat)
-"""The same number in each lane."""
+"""Put one number into every lane."""
 fma: Any = _intrinsic(lanes, (lanes, lanes, lanes), _called("fma"))
 """a b + c, rounded once."""
 magnitude: Any = _intrinsic(lanes, (lanes,), _called("fabs"))
@@ -243,7 +243,7 @@ smaller: Any = _intrinsic(
 
 
 def written(width: int) -> dict[str, Any]:
-    """What generates each function of written code, by its name there."""
+    """Generator of each function of written code, by its name there."""
     of_llvm = ("fma", "exp", "log", "sin", "cos", "pow", "copysign")
     of_libm = ("tanh", "sinh", "cosh", "atan", "asin")
     return {

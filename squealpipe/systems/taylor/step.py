@@ -338,7 +338,7 @@ def _bounds(t: Any, m: Any, c: Any, lane: int, surface: int, step: float) -> Any
 
 @part
 def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
-    """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
+    """Find when the first watched surface is crossed, or the step; its switch goes into ``hit``."""
     integers = m.integers
     bit = 1 << lane
     first, tie, complete, winner = step, step * 2.0**-44, step, -1
@@ -393,7 +393,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
 def _is_hidden(
     t: Any, m: Any, c: Any, lane: int, surface: int, step: float, root: float
 ) -> bool:
-    """Whether round-off of a surface's series, or of its terms, hides where it is crossed.
+    """Tell whether round-off of a surface's series, or of its terms, hides where it is crossed.
 
     What is uncertain is compared with the step that the series allow, not with one that the end of
     the run cuts short. A surface that has started from zero and soon returns, as where impacts
@@ -422,7 +422,7 @@ def _is_hidden(
 
 @part
 def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
-    """Whether a lane's step is, and the surfaces to be searched, which might be so for ever.
+    """Tell whether a lane's step and its surfaces are finite; others might be searched for ever.
 
     Puts bounds of their third derivatives, and of their round-off, into the scratch, which the
     search needs as well.

@@ -67,7 +67,7 @@ def gauge(t: Any, lane: int, width: int) -> None:
 
 @part
 def _watch_clock(m: Any, lane: int, surface: int, gauged: Any) -> None:
-    """Whether a clock ticks just now, and whether that tick has been carried out already."""
+    """Note a clock that ticks just now, and whether that tick has been carried out already."""
     height, terms, rate = gauged[0], gauged[1], gauged[2]
     if abs(height) <= surface_round_off.slack * terms:
         m.fresh[surface] |= 1 << lane
@@ -81,7 +81,7 @@ def _watch_clock(m: Any, lane: int, surface: int, gauged: Any) -> None:
 
 @part
 def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
-    """Which surfaces a lane watches in its regimes, and where they start.
+    """Note the surfaces that a lane watches in its regimes, and those that start at zero or beyond.
 
     One that the state is beyond fires at once. Within the tolerance of zero it starts from there,
     and fires if it goes on. A surface with a switch on both sides has nothing beyond it, nor has
@@ -166,7 +166,7 @@ def _start_where_crossed(t: Any, m: Any, lane: int, which: int, before: int) -> 
 
 @part
 def is_beyond(t: Any, m: Any, lane: int, which: int) -> bool:
-    """Whether a lane has entered a regime beyond the surface of this switch of the regime."""
+    """Tell whether a lane has entered a regime beyond the surface of this switch of the regime."""
     beyond = False
     for surface in range(t.n_surfaces):
         regime = m.integers[layout.integers.first_regime + m.owner[surface], lane]

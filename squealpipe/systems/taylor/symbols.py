@@ -109,7 +109,7 @@ class Symbol:
     __hash__ = object.__hash__
 
     def __eq__(self, other: object) -> bool:
-        """Whether it is the same node; compared with a number it is refused."""
+        """Tell whether it is the same node; compared with a number it is refused."""
         return self is other if isinstance(other, Symbol) else self._refuse()
 
     def __call__(self, *_: Any) -> Any:
@@ -281,7 +281,7 @@ def slope_of_asin(inner: Symbol) -> Symbol:
 
 @cache
 def degree(value: Symbol) -> float:
-    """Of a polynomial in the variables; infinite of what is none."""
+    """Degree of a polynomial in the variables; infinite of anything else."""
     inner = [degree(a) if isinstance(a, Symbol) else 0.0 for a in value.arguments]
     if value.kind == "variable" or not value.varies:
         return float(value.kind == "variable")
@@ -311,7 +311,7 @@ def in_order(roots: Sequence[Symbol]) -> list[Symbol]:
 
 
 def substituted(roots: Sequence[Symbol], given: dict[int, Symbol]) -> dict[int, Symbol]:
-    """What stands for each node below the roots, by ``id``, where some nodes are replaced."""
+    """Replacement of each node below the roots, by ``id``, where some nodes are given."""
     made = dict(given)
     for node in in_order(roots):
         if id(node) not in made:

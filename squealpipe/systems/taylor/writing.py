@@ -39,7 +39,7 @@ def compile_source(source: str, width: int = simd.LANES) -> int:
 
 @cache
 def _own_sources() -> bytes:
-    """What decides how text becomes LLVM's code."""
+    """Sources that decide how text becomes LLVM's code."""
     return b"".join(Path(path or "").read_bytes() for path in (simd.__file__, __file__))
 
 

@@ -70,7 +70,7 @@ def onsets(at, branches, limits):
 
 
 def around_friction(at, state):
-    """Over κ and μ at two angles."""
+    """Return where the whirl is born and its stick begins, over κ and μ at two angles."""
     cycle = limit_cycle(damped, *at, guess=state)
     if cycle.outcome != Outcome.converged:
         return {}
@@ -83,7 +83,7 @@ def around_friction(at, state):
 
 
 def around_angles(at, state):
-    """Over both angles, along the sides of their square."""
+    """Return the same onsets over both angles, from the sides of their square."""
     found: dict[str, list] = {"whirl": [], "stick": []}
     limits = {
         f"alpha{i}": (each[0], each[-1]) for i, each in enumerate(ranges, start=1)

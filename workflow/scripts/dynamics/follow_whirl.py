@@ -1,4 +1,4 @@
-"""What becomes of the responses of Figs. 3 and 4 in the long run."""
+"""Responses of Figs. 3 and 4 in the long run."""
 
 import numpy as np
 from squealpipe.brake.dynamics.runs import simulate

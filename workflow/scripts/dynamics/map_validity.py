@@ -1,4 +1,4 @@
-"""Where model A1 keeps contact; of a scattered map the rows of one part."""
+"""Map of where model A1 keeps contact; of a scattered map the rows of one part."""
 
 from squealpipe.brake.dynamics.runs import validity_map
 from squealpipe.study.job import Job

@@ -1,4 +1,4 @@
-"""Where model A1 keeps contact, at full resolution."""
+"""Map of where model A1 keeps contact, at full resolution."""
 
 from squealpipe.brake.dynamics.refinement import refine_validity_map
 from squealpipe.study.job import Job

@@ -1,4 +1,4 @@
-"""Which parameters agree with the paper's statements."""
+"""Parameters that agree with the paper's statements."""
 
 from squealpipe.paper.inference.inference import infer_parameters
 from squealpipe.parameters import parameters_of

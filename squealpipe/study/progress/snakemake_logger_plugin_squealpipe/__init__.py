@@ -18,7 +18,7 @@ from squealpipe.study.durations import job_times
 from squealpipe.study.progress.remaining import Remaining
 
 NO_STEPS = {"total", "all"}
-"""What Snakemake counts beside the rules that make something: the sum, and the last target."""
+"""Names that Snakemake counts beside the rules that make something: the sum, the last target."""
 
 
 @dataclass
