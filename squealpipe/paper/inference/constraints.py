@@ -333,10 +333,18 @@ def _jumps(candidates: Candidates) -> StatementMargin:
     "the unstable cells",
 )
 def _unstable_only_without_sliding(candidates: Candidates) -> StatementMargin:
+    """Look at the cells where friction drags along −x, for along +x the statement always holds.
+
+    Divergence, K11 K22 − K12² + k3 (K11 − μ K12) < 0, needs K11 < μ K12. Flutter needs
+    K12 (K12 + μ k3) < 0 and so K12 < 0, where Eq. (11) as printed is never fulfilled.
+    """
     share = np.zeros(candidates.size)
+    rows = np.arange(candidates.size)
+    if not candidates.extended:
+        rows = rows[candidates.drag < 0]
     # unless margins are wanted, one cell in 16 comes first: one that fulfils it decides
     for every in (1,) if candidates.exact else (16, 1):
-        left = np.flatnonzero(share == 0)
+        left = rows[share[rows] == 0]
         share[left] = _sliding_share(candidates.subset(left), every)
     return _closed(np.where(share > 0, -share, 1.0))
 

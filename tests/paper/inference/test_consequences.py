@@ -25,6 +25,7 @@ from squealpipe.paper.inference.candidates import Candidates, sets_of
 from squealpipe.paper.inference.consequences import judge_consequences
 from squealpipe.paper.inference.constraints import (
     Stage,
+    _sliding_share,
     _unstable_only_without_sliding,
     measure,
 )
@@ -32,7 +33,7 @@ from squealpipe.parameters import SCENES
 from squealpipe.reading import READINGS
 from squealpipe.schema import Outcome
 from tests.former import FORMER
-from tests.paper.inference.parameter_sets import random_sets
+from tests.paper.inference.parameter_sets import fields_of, random_sets
 
 
 def linear(params):
@@ -211,6 +212,17 @@ def test_few_of_the_unstable_cells_say_which_set_eq_11_refutes(likely):
     ]
     np.testing.assert_array_equal(*(margin > 0 for margin in margins))
     assert 0 < (margins[0] > 0).sum() < exact.size
+
+
+def test_no_unstable_cell_fulfils_eq_11_as_printed_where_friction_drags_along_x():
+    """Which is why no cell is looked at there: by all cells of random sets."""
+    sets = random_sets(np.random.default_rng(9), 400, equal=False)
+    candidates = Candidates(fields_of(sets), 1e-9)
+    share, along = _sliding_share(candidates, 1), candidates.drag > 0
+    assert 100 < along.sum() < 300
+    assert (share[along] == 0).all()
+    margin = _unstable_only_without_sliding(candidates).margin
+    np.testing.assert_array_equal(margin, np.where(share > 0, -share, 1.0))
 
 
 @pytest.mark.release
