@@ -87,7 +87,9 @@ def test_fig07_tones():
     assert (
         fig07.grows(validity.assign(response_growth=grown)) == (grown.values > 1.5)
     ).all()
-    both = fig07.draw({"corrected/validity_map": validity, "validity_map": validity})
+    maps = {"corrected/validity_map": validity, "validity_map": validity}
+    assert "(a) as printed; (b) one sign" in fig07.caption(maps)
+    both = fig07.draw(maps)
     titles = [axes.get_title(loc="left") for axes in both.axes]
     assert "as printed" in titles[0]
     assert "one sign" in titles[1]

@@ -130,20 +130,19 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
             the boundary in each.
     """
     maps = _maps(found)
-    names = sorted(maps, key=len)
     size = (
-        (6.4, 4.0) if len(names) > 1 else (4.3, 3.9)
+        (6.4, 4.0) if len(maps) > 1 else (4.3, 3.9)
     )  # for text large enough on page one
-    figure, axes = style.new_figure(*size, text=1.36, ncols=len(names))
+    figure, axes = style.new_figure(*size, text=1.36, ncols=len(maps))
     counts = []
-    for panel, letter, name in zip(axes[0], "ab", names, strict=False):
+    for panel, letter, name in zip(axes[0], "ab", maps, strict=False):
         kinds = draw_kinds(
             panel, maps[name], found.get(f"{_kind(name)}validity_boundary")
         )
         mark_figure_3(panel)
         counts.append(np.bincount(kinds.ravel(), minlength=len(CELL_KINDS)))
         words = TITLES[_kind(name)].removesuffix(" in all models")
-        title = f"{words}: " if len(names) > 1 else ""
+        title = f"{words}: " if len(maps) > 1 else ""
         style.panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells")
     handles = key()
     for index, handle in enumerate(handles):
@@ -155,7 +154,9 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
 
 
 def _maps(found: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    return {name: each for name, each in found.items() if name.endswith("validity_map")}
+    """Return the maps, by name, in the order of their panels."""
+    names = [f"{kind}validity_map" for kind in TITLES]
+    return {name: found[name] for name in names if name in found}
 
 
 def _kind(name: str) -> str:

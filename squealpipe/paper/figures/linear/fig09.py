@@ -3,7 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from squealpipe.paper.figures.panels.frequency_map import LINES_AND_HATCHING, draw_mode
+from squealpipe.paper.figures.panels.frequency_map import draw_mode
 from squealpipe.study.figures.declared import report_figure
 
 
@@ -11,7 +11,7 @@ from squealpipe.study.figures.declared import report_figure
     reads=("natural_frequencies",),
     caption=(
         "Second natural frequency ω₂ of model A4 (a) in contact, Eq. (22b), and (b) separated, "
-        f"Eq. (25b). {LINES_AND_HATCHING}"
+        "Eq. (25b). Lines and hatching as in Fig. 8."
     ),
     alt=(
         "Two maps of the second natural frequency over both spring angles, in contact and "
