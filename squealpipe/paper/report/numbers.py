@@ -10,13 +10,8 @@ from squealpipe.benchmark.schema import Role
 from squealpipe.brake.schema.curves import ChartLine
 from squealpipe.brake.schema.dynamics.extremes import largest_size
 from squealpipe.paper.claims.maps import unstable_yet_sliding
-from squealpipe.paper.figures.comparison.model_ladder import shares_of_a3
 from squealpipe.paper.figures.comparison.speed_and_accuracy import scenes_of_a1
-from squealpipe.paper.figures.comparison.where_methods_fail import (
-    answers,
-    silent_by_class,
-    substitutes,
-)
+from squealpipe.paper.figures.comparison.where_methods_fail import answers, substitutes
 from squealpipe.paper.figures.linear.critical_friction import LARGEST_SHOWN
 from squealpipe.paper.figures.linear.frequency_shift import NO_SHIFT
 from squealpipe.paper.schema.claims import Basis, ClaimVerdict, Origin
@@ -221,7 +216,8 @@ def _methods(run: Evidence) -> dict[str, Any]:
     }
     table = answers(benchmark)
     public = (benchmark.role == Role.public).values
-    hindsight, beforehand = shares_of_a3(run["model_ladder"])
+    silent = table.silent.sum("group")
+    in_place_of_events = silent.solver.isin(substitutes(benchmark)).values
     return {
         "asked_error": asked,
         "ours_error": mine.error,
@@ -231,31 +227,9 @@ def _methods(run: Evidence) -> dict[str, Any]:
         "ours_cpu_most": times.max(),
         **{f"{key}_cpu": ratio for key, ratio in beside.items()},
         "public_answers": table.asked.isel(solver=public).sum(),
-        "public_silent": table.silent.isel(solver=public).sum(),
-        **_silent(benchmark),
+        "public_silent": silent[public].sum(),
+        "substitute_silent": silent[public & in_place_of_events].sum(),
+        "integrator_silent": silent[public & ~in_place_of_events].sum(),
         "our_answers": table.asked.isel(solver=~public).sum(),
-        "our_silent": table.silent.isel(solver=~public).sum(),
-        "a3_hindsight": hindsight,
-        "a3_beforehand": beforehand,
-    }
-
-
-def _silent(benchmark: xr.Dataset) -> dict[str, Any]:
-    """Silent failures of methods in place of events, and of integrators that locate events."""
-    stand_ins = substitutes(benchmark)
-    integrators = [
-        name
-        for name in benchmark.solver.values.tolist()
-        if name not in (*stand_ins, "squealpipe")
-    ]
-    parts = {"substitute": stand_ins, "integrator": integrators}
-    counts = {key: silent_by_class(benchmark, names) for key, names in parts.items()}
-    return {
-        **{f"{key}_silent": sum(count.values()) for key, count in counts.items()},
-        **{
-            f"{key}_classes": ", ".join(
-                f"{name} ({count})" for name, count in each.items() if count
-            )
-            for key, each in counts.items()
-        },
+        "our_silent": silent[~public].sum(),
     }

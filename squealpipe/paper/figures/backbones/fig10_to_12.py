@@ -13,7 +13,7 @@ def caption(branches: Mapping[str, xr.Dataset]) -> str:
     """Describe the rows, and the marks that are drawn."""
     return (
         "Periodic motions of model A4 over the frequency, one row for each of Figs. 10, 11 and "
-        f"12, with the mode of the lower frequency on the left. {key(branches)}"
+        f"12, with the mode of the lower frequency on the left. {key(branches, first=True)}"
     )
 
 

@@ -1,7 +1,5 @@
 """Failures at a glance: how often each integrator is silently wrong, by class of problem."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -25,13 +23,6 @@ def answers(benchmark: xr.Dataset) -> xr.Dataset:
     order = list(dict.fromkeys(known.group.values.tolist()))
     summed: xr.Dataset = table.sel(group=order)
     return summed
-
-
-def silent_by_class(benchmark: xr.Dataset, solvers: Sequence[str]) -> dict[str, int]:
-    """Return how many answers of some solvers are silently wrong, by class, most first."""
-    silent = answers(benchmark).silent.sel(solver=list(solvers)).sum("solver")
-    counts = zip(silent.group.values.tolist(), silent.values.tolist(), strict=True)
-    return dict(sorted(counts, key=lambda row: -row[1]))
 
 
 def substitutes(benchmark: xr.Dataset) -> list[str]:

@@ -14,19 +14,20 @@ from squealpipe.plotting.origin import angle_pair, parameter
 STABLE_TO_ROUND_OFF = 2.0 + 1e-6
 
 
-def key(branches: Mapping[str, xr.Dataset]) -> str:
-    """Return the sentence of a caption that explains the marks that are drawn."""
+def key(branches: Mapping[str, xr.Dataset], *, first: bool = False) -> str:
+    """Return the words of a caption about the marks: all in the first figure that has them."""
     exact = [branch for name, branch in branches.items() if not name.endswith("_hbm")]
     looks = []
     if any((_unstable(each) & ~_overtakes(each)).any() for each in exact):
         looks.append("dotted where unstable")
     if any(_overtakes(each).any() for each in exact):
         looks.append("grey where the mass overtakes the belt and A4 does not hold")
-    return (
+    marks = (
         "Blue: largest y, so that contact is lost where it reaches the black line at l_pre; "
         "orange: amplitude of x, half of its peak to peak. Crosses: harmonic balance; lines: "
-        f"{', '.join(['exact orbits', *looks])}."
+        "exact orbits"
     )
+    return f"{', '.join([marks if first else 'Marks as in Figs. 10–12', *looks])}."
 
 
 def _unstable(exact: xr.Dataset) -> np.ndarray:

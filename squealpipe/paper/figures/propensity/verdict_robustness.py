@@ -13,7 +13,7 @@ from squealpipe.study.figures.declared import report_figure
 @report_figure(
     reads=("verdict_robustness",),
     caption=(
-        "The paper's statements in settings that it leaves out, by the criteria of the inference. "
+        "The paper's statements by the criteria of the inference, in settings that it leaves out. "
         "Blue: the statement holds; red: it fails; numbers: share in % of random starts, or of the "
         "feasible parameters, in which it holds, with half its 95 % interval; grey: not judged. "
         "R is the reaction force, v₀ the speed over which friction falls. With dashpots, or "
