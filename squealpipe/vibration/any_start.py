@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from typing import Any, Protocol, Self
 
@@ -326,7 +326,10 @@ def lead(
             cure = sides[row].cure
             subject = cure.apply(cure.value + (1.0 - left) * way)
             # none where it has no steady sliding
-            made = subjects.starts(subject, 0, sides[row].motions)
+            made = [
+                replace(start, is_led=True)
+                for start in subjects.starts(subject, 0, sides[row].motions)
+            ]
             starts += made
             owners += [row] * len(made)
         runs = list(zip(owners, subjects.settle(starts), strict=True))

@@ -67,6 +67,8 @@ class Start:
             windows' velocities; of an undamped subject that of this start.
         rate: growth rate of small motions, 1/s; 0 where no run would show growth or decay.
         is_linear: whether motions during which no contact switches decay as small ones do.
+        is_led: whether it is where a motion lasts at another value of a parameter. Its windows need
+            not be so long that they show how slowly small motions grow.
         measure: size of a deviation (states,) as a velocity.
     """
 
@@ -77,6 +79,7 @@ class Start:
     speed: float
     rate: float
     is_linear: bool = False
+    is_led: bool = False
     measure: Callable[[np.ndarray], float] = field(repr=False)
 
     def distance(self, state: np.ndarray) -> float:
@@ -156,7 +159,9 @@ class Horizon:
     def of(cls, starts: Sequence[Start], most_periods: float) -> Self:
         """Return the lengths for starts whose small motions grow to e^½ in the first window."""
         period = np.array([start.period for start in starts])
-        rates = [abs(start.rate) * start.period for start in starts]
+        rates = [
+            0.0 if start.is_led else abs(start.rate) * start.period for start in starts
+        ]
         shown = [Quietness.shown / rate if rate > 0 else 0.0 for rate in rates]
         # in periods of the slowest mode that grows, or of any; twice as many take twice as long
         # where the motion settles at once

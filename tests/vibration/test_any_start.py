@@ -7,6 +7,17 @@ import pytest
 
 from squealpipe.vibration.any_start import any_start, lead, sides_of
 from squealpipe.vibration.boundaries import Cure
+from squealpipe.vibration.settled_runs import Start
+
+START = Start(
+    subject=None,
+    state=np.zeros(1),
+    sliding=np.zeros(1),
+    period=1.0,
+    speed=1e-3,
+    rate=1e-5,
+    measure=float,
+)
 
 
 @pytest.mark.parametrize("fold", [0.0213, 0.0041])
@@ -71,7 +82,7 @@ def test_a_motion_is_not_led_to_where_there_is_no_steady_sliding():
 
     class Subjects:
         def starts(self, subject, number, motions):  # noqa: ARG002
-            return [] if subject < 0.7 else [subject]
+            return [] if subject < 0.7 else [START]
 
         def settle(self, starts):
             last = SimpleNamespace(final=np.array([2.0]))

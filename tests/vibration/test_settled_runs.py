@@ -163,3 +163,13 @@ def test_the_time_left_is_told_as_if_the_next_window_were_the_last():
             told=lambda *_: None,
         )
     assert shares == [0.0, 0.5, 0.5, 0.5]
+
+
+def test_a_motion_that_is_led_waits_for_no_slow_growth():
+    """Beside a boundary each value that a motion was led to cost it 10,000 periods."""
+    rate = 1e-5
+    slow = replace(START, rate=rate)
+    led = replace(slow, is_led=True)
+    horizon = Horizon.of([replace(START, rate=0.5 / 400.0), slow, led], 20_000.0)
+    # ½ over the rate, as long as that is no more than a quarter of the longest run
+    np.testing.assert_allclose(horizon.first, [400.0, 5000.0, 50.0])
