@@ -8,11 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from squealpipe.codes import flag_words
 from squealpipe.plotting import style
 from squealpipe.plotting.hysteresis import draw_hysteresis, has_tracks
 from squealpipe.plotting.modes import draw_stability, frequency_unit, show_what_grows
-from squealpipe.schema import meanings
+from squealpipe.structures.schema.squealing import Kind
 from squealpipe.systems.inputs.units import engineering
 from squealpipe.systems.inputs.words import number
 
@@ -164,11 +163,7 @@ def draw_shares(axes: Axes, answer: xr.Dataset) -> None:
 
 def _names(answer: xr.Dataset) -> list[str]:
     """Each attractor by its frequency and kind."""
-    kinds = meanings(answer.kind)
-    words = [
-        flag_words(kinds[int(value)]).replace("torus", "quasi-periodic")
-        for value in answer.kind.values
-    ]
+    words = [Kind(int(value)).words for value in answer.kind.values]
     return [
         word.replace(" ", "\n")
         if np.isnan(frequency)

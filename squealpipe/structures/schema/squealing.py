@@ -55,6 +55,17 @@ class Kind(IntEnum):
     torus = 3
     irregular = 4
 
+    @property
+    def words(self) -> str:
+        """The kind as people read it, everywhere; datasets and tables keep its name."""
+        return {
+            Kind.undetermined: "undetermined",
+            Kind.steady_sliding: "steady sliding",
+            Kind.cycle: "cycle",
+            Kind.torus: "quasi-periodic",
+            Kind.irregular: "irregular",
+        }[self]
+
 
 class OnsetKind(IntEnum):
     """Fate, below the onset of instability, of the motion that squeals just above."""

@@ -458,10 +458,10 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
             yield f"{share} steady sliding."
             continue
         words = {
-            Kind.cycle: "a cycle",
-            Kind.torus: "a quasi-periodic motion",
-            Kind.irregular: "an irregular motion",
-        }.get(attractor_kind, "a motion of undetermined kind")
+            Kind.cycle: f"a {attractor_kind.words}",
+            Kind.torus: f"a {attractor_kind.words} motion",
+            Kind.irregular: f"an {attractor_kind.words} motion",
+        }.get(attractor_kind, f"a motion of {attractor_kind.words} kind")
         mode = float(one.dominant_frequency) - float(one.frequency_shift)
         shift = float(one.frequency_shift) / mode if mode > 0.0 else 0.0
         near = off_by(shift) if is_shifted(shift) else "near"
