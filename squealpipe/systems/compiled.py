@@ -1,8 +1,7 @@
-"""Compile kernels by numba, and keep their machine code between runs.
+"""Compile parts of kernels by numba, and say where machine code is kept between runs.
 
 A function is compiled by who calls it:
 
-- :func:`compiled`: Python calls it;
 - ``part``: other compiled code calls it, so there are no wrappers to compile, and no counts of
   references to arrays (an eighth of the time), so it makes none and returns none;
 - ``views``: likewise where it makes views of memory that others keep, and returns them;
@@ -10,14 +9,9 @@ A function is compiled by who calls it:
   ``inline_views`` where it returns views of which few are used;
 - ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain.
 
-(Whole loops that are called by their addresses, and source text made at run time, are compiled in
-:mod:`squealpipe.systems.taylor.machine`.)
-
-Only the first is stored, with all that it calls, in the user's cache folder: one store for all
-checkouts. numba decides by a function's own file whether its stored code is current, but
-that code contains what it calls from other files. Each store is therefore keyed by a digest of
-every source and numba's version (numba adds the processor): an edit of any source compiles all
-again, and none is ever stale. (heyoka compiles expressions of its own, in
+Whole loops that are called by their addresses, and source text made at run time, are compiled and
+kept in :mod:`squealpipe.systems.taylor.machine`; functions that Python calls with arrays, in
+:mod:`squealpipe.systems.taylor.kernels`. (heyoka compiles expressions of its own, in
 :mod:`tests.oracles.a1_long_double`, and stores nothing.)
 """
 
@@ -27,11 +21,10 @@ import os
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
-from functools import cache, partial
+from contextlib import ExitStack, contextmanager
+from functools import cache
 from pathlib import Path
-from types import FunctionType
-from typing import Any, TypeVar, cast
+from typing import Any
 
 import numba
 from numba import types
@@ -44,7 +37,6 @@ from squealpipe.systems.progress import stage
 
 _numba: Any = numba
 _settings: Any = numba.config  # untyped, the home of CACHE_DIR
-_Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
 _Dispatcher: Any = CPUDispatcher
 _Compiler: Any = CompilerBase
 _Pass: Any = FunctionPass
@@ -112,7 +104,7 @@ class KernelCompiler(_Compiler):  # type: ignore[misc]
         return [passes]
 
 
-class _Inner(_Dispatcher):  # type: ignore[misc]
+class Inner(_Dispatcher):  # type: ignore[misc]
     """A function that only compiled code calls; once for a number that is known and for others."""
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
@@ -124,8 +116,8 @@ class _Inner(_Dispatcher):  # type: ignore[misc]
         """Raise, where numba would jump to an address that there is not and end the process."""
         name = self.py_func.__qualname__
         raise TypeError(
-            f"{name} has no wrapper for Python: call it from a function that is @compiled, or "
-            f"{name}.py_func, its Python code"
+            f"{name} has no wrapper for Python: call it from compiled code, or {name}.py_func, its "
+            "Python code"
         )
 
 
@@ -134,7 +126,7 @@ def _inner(**options: Any) -> Any:
 
     def compile_(function: Callable[..., Any]) -> Any:
         kernel = _numba.njit(pipeline_class=KernelCompiler, **options)(function)
-        kernel.__class__ = _Inner
+        kernel.__class__ = Inner
         return kernel
 
     return compile_
@@ -234,26 +226,6 @@ def timed_compilation() -> Iterator[None]:
         _compiler_clock.on_end(None)
 
 
-def kernel_sources() -> list[Path]:
-    """This file and every module of its package that compiles kernels or their parts."""
-    here = Path(__file__)
-    package = here.parents[__name__.count(".") - 1]
-    # kernels import the decorator by this line
-    mark = b"from squealpipe.systems.compiled import "
-    users = [
-        path for path in sorted(package.rglob("*.py")) if mark in path.read_bytes()
-    ]
-    return [here, *(path for path in users if path != here)]
-
-
-@cache
-def _store() -> str:
-    """Directory of the kernels that Python calls, by a digest of them all."""
-    return store_folder(
-        "kernels", b"".join(source.read_bytes() for source in kernel_sources())
-    )
-
-
 def store_folder(kind: str, content: bytes) -> str:
     """NUMBA_CACHE_DIR or the user's cache folder, and in it one for this content."""
     content += numba.__version__.encode()
@@ -276,37 +248,3 @@ def _how_often() -> str:
     except OSError as error:
         return f"compiling at every run ({error.strerror}: {_root()}; set {variable})"
     return "compiling, once on this machine"
-
-
-def _kept(function: Callable[..., Any], folder: str) -> Any:
-    """The function compiled and stored where the folder has room; else without a store.
-
-    numba stores under the path of a function's file, which differs from checkout to checkout: the
-    function is given an empty file of the store in its place.
-    """
-    compile_ = partial(
-        _numba.njit, nogil=True, error_model="numpy", no_cfunc_wrapper=True
-    )
-    previous = _settings.CACHE_DIR
-    _settings.CACHE_DIR = folder
-    try:
-        place = Path(folder) / f"{function.__module__}.py"
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.touch()
-        code = function.__code__.replace(co_filename=str(place))
-        kernel = compile_(cache=True)(FunctionType(code, function.__globals__))
-    except (RuntimeError, OSError):
-        return compile_(cache=False)(function)
-    else:  # a disk that is full ends no run
-        kernel._cache._guard_against_spurious_io_errors = partial(suppress, OSError)  # noqa: SLF001
-        return kernel
-    finally:
-        _settings.CACHE_DIR = previous
-
-
-def compiled(function: _Kernel) -> _Kernel:
-    """Compile on first call, without the interpreter lock; keep the result where one can write.
-
-    Where nothing can be written the kernel is compiled anew in each process.
-    """
-    return cast("_Kernel", _kept(function, _store()))

@@ -9,11 +9,14 @@ import sys
 from pathlib import Path
 
 import numba
+import numpy as np
 import pytest
 
 import squealpipe
+from squealpipe.brake.orbits.modal_flow import advance
+from squealpipe.brake.orbits.piecewise_linear import LinearState
 from squealpipe.systems import compiled
-from squealpipe.systems.taylor import lanes
+from squealpipe.systems.taylor import kernels, lanes, machine
 
 PACKAGE = Path(squealpipe.__file__).parent
 PROGRAM = """
@@ -76,16 +79,8 @@ def test_a_part_is_compiled_once_for_constants_and_other_numbers():
     assert len(double.signatures) == 1
 
 
-def test_every_kernel_file_is_part_of_the_digest():
-    """A kernel in a file that is not listed would be used stale after an edit."""
-    files = PACKAGE.rglob("*.py")
-    using = {path.name for path in files if "\n@compiled\n" in path.read_text("utf-8")}
-    assert len(using) > 2
-    assert using <= {path.name for path in compiled.kernel_sources()}
-
-
 def test_an_edit_of_how_parts_are_compiled_compiles_the_loops_anew():
-    assert Path(compiled.__file__).read_bytes() in lanes._sources(None)
+    assert Path(compiled.__file__).read_bytes() in lanes.sources_of(None)
 
 
 def test_collection_of_garbage_waits_for_the_compiler_and_stays_off_where_it_was():
@@ -111,26 +106,30 @@ def test_processes_and_checkouts_share_one_store(copy, tmp_path):
     assert [_omega(process) for process in together] == pytest.approx(
         [KNOWN] * 2, abs=1.2e-14
     )
-    stores = list((tmp_path / "cache/squealpipe").glob("kernels-*"))
+    stores = list((tmp_path / "cache/squealpipe").glob("written-*"))
     assert len(stores) == 1
-    kept = {path.name for path in stores[0].rglob("*.nbc")}
+    kept = {path.name for path in stores[0].rglob("*.o")}
     assert kept
     (copy / "squealpipe").rename(tmp_path / "moved")
     (tmp_path / "other").mkdir()
     other = (tmp_path / "moved").rename(tmp_path / "other/squealpipe").parent
     assert _omega(_run(other, **place)) == pytest.approx(KNOWN, abs=1.2e-14)
-    assert {path.name for path in stores[0].rglob("*.nbc")} == kept
+    assert {path.name for path in stores[0].rglob("*.o")} == kept
 
 
-def test_an_edit_of_any_kernel_opens_a_new_store(copy, monkeypatch):
+def test_an_edit_of_any_kernel_compiles_all_of_its_folder_anew(monkeypatch):
     """numba itself would go by the file of the calling kernel alone."""
+    folder = PACKAGE / "brake/orbits"
+    taken = []
     monkeypatch.setattr(
-        compiled, "__file__", str(copy / "squealpipe/systems/compiled.py")
+        kernels, "addresses_of_entries", lambda *given: taken.append(given) or []
     )
-    before = compiled._store.__wrapped__()
-    edited = copy / "squealpipe/brake/orbits/modal_flow.py"
-    edited.write_text(edited.read_text("utf-8") + "\n# edited\n", "utf-8")
-    assert compiled._store.__wrapped__() != before
+    kernels.Kernels(folder).compile()
+    ((_, content),) = taken
+    for name in ("modal_flow", "shooting", "orbit_shape"):
+        source = (folder / f"{name}.py").read_bytes()
+        assert b"\n@kernel\n" in source
+        assert source in content
 
 
 @pytest.mark.parametrize("variable", ["XDG_CACHE_HOME", "NUMBA_CACHE_DIR"])
@@ -149,15 +148,32 @@ def test_who_waits_for_what_cannot_be_kept_is_told_why(monkeypatch, tmp_path, va
 
 def test_a_kernel_runs_where_the_store_is_full(monkeypatch, tmp_path):
     """The command ended with: No space left on device."""
-    monkeypatch.setattr(compiled, "_store", lambda: str(tmp_path))
-    kernel = compiled.compiled(lambda number: 2.0 * number)
+    monkeypatch.setattr(machine, "store_folder", lambda *_: str(tmp_path))
+
+    @kernels.Kernels(tmp_path)
+    def double(number: float) -> float:
+        return 2.0 * number
+
     usual = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (64, usual[1]))
     try:
-        assert kernel(2.0) == 4.0
+        assert double(2.0) == 4.0
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, usual)
-    assert not [*tmp_path.rglob("*.nb?")]
+    assert not [*tmp_path.rglob("*")]
+
+
+@pytest.mark.parametrize(
+    "array", [np.arange(3), np.arange(6.0)[::2]], ids=["integers", "every other number"]
+)
+def test_python_that_hands_a_kernel_another_array_is_told_which(array):
+    """It would read beside it."""
+    point, out = np.array([0.4, 1.3, 0.0, 0.0]), np.zeros(8)
+    row = LinearState(((1.0, 0.0), (0.0, 1.0)), (0.0, 0.0)).row(0.4)
+    with pytest.raises(TypeError, match="coefficients: a contiguous array of float64"):
+        advance(row, array, point)
+    with pytest.raises(TypeError, match="row: a contiguous array of "):
+        advance(array, out, point)
 
 
 @pytest.mark.release

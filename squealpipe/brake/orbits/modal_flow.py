@@ -11,11 +11,14 @@ B; ω1 and ω2, real and imaginary; the load b; and the threshold of y
 (see :class:`squealpipe.brake.orbits.piecewise_linear.PiecewiseLinearSystem`).
 """
 
-from typing import Any
+import math
+from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
 
-from squealpipe.systems.compiled import compiled, part
+from squealpipe.systems.compiled import part
+from squealpipe.systems.taylor.kernels import Kernels, Vector
 
 state_row_type = np.dtype(
     [
@@ -28,6 +31,9 @@ state_row_type = np.dtype(
     ]
 )
 """One linear state as compiled code reads it."""
+Row = Annotated[Any, state_row_type, 0]
+Rows = Annotated[Any, state_row_type, 1]
+kernel = Kernels(Path(__file__).parent)
 GIVEN_UP = -2.0
 """Answer of :func:`next_crossing` after too many look-aheads."""
 
@@ -109,8 +115,8 @@ def coefficients_at(row: Any, time: float) -> Any:
     )
 
 
-@compiled
-def propagator(row: Any, time: float, out: Any) -> None:
+@kernel
+def propagator(row: Row, time: float, out: Vector) -> None:
     """Fill ``out`` with :func:`coefficients_at` a time."""
     out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7] = coefficients_at(
         row, time
@@ -168,8 +174,8 @@ def apply(row: Any, coefficients: Any, state: Any) -> None:
     )
 
 
-@compiled
-def advance(row: Any, coefficients: Any, state: Any) -> None:
+@kernel
+def advance(row: Row, coefficients: Vector, state: Vector) -> None:
     """Advance a state (x, y, vx, vy) in place, load b included."""
     state[0], state[1], state[2], state[3] = moved_state(
         row, coefficients, state[0], state[1], state[2], state[3]
@@ -200,13 +206,13 @@ def _jerk_bound(
     norm_b = abs(row.half_difference) + max(abs(row.a12), abs(row.a21))
     growth = 1.0 + 0.5 * norm_b * step * step
     if row.omega1_imaginary != 0.0 or row.omega2_imaginary != 0.0:
-        growth *= np.exp(
+        growth *= math.exp(
             max(abs(row.omega1_imaginary), abs(row.omega2_imaginary)) * step
         )
     jx = (row.mean + row.half_difference) * vx + row.a12 * vy
     jy = row.a21 * vx + (row.mean - row.half_difference) * vy
-    later = (abs(row.mean) + norm_b) * step * np.sqrt(ax * ax + ay * ay)
-    return float(growth * (np.sqrt(jx * jx + jy * jy) + later))
+    later = (abs(row.mean) + norm_b) * step * math.sqrt(ax * ax + ay * ay)
+    return float(growth * (math.sqrt(jx * jx + jy * jy) + later))
 
 
 @part
@@ -255,8 +261,8 @@ def _refine_crossing(
     return time
 
 
-@compiled
-def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
+@kernel
+def next_crossing(row: Row, origin: Vector, sign: float, horizon: float) -> float:
     """First time in (0, horizon] at which y leaves this state's side, −1, or ``GIVEN_UP``.
 
     ``sign`` is +1 above and −1 below the threshold. Each look-ahead is bounded by Taylor's
@@ -268,7 +274,9 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
     # rad of the fastest mode: up to this phase a bound on the curvature replaces trial and error
     longest_look_ahead = 1.0
     longest = longest_look_ahead / max(
-        np.sqrt(row.omega2 * row.omega2 + row.omega2_imaginary * row.omega2_imaginary),
+        math.sqrt(
+            row.omega2 * row.omega2 + row.omega2_imaginary * row.omega2_imaginary
+        ),
         1e-300,
     )
     time = 0.0
@@ -298,7 +306,9 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
         ahead = time + step
         x, y, vx, vy = moved_state(row, coefficients_at(row, ahead), x0, y0, vx0, vy0)
         if falls and sign * (y - row.threshold) <= 0.0:
-            root = np.sqrt(slope * slope - 2.0 * curvature * distance)  # NaN: no guess
+            root = math.sqrt(
+                slope * slope - 2.0 * curvature * distance
+            )  # NaN: no guess
             guess = time + 2.0 * distance / (root - slope)
             return float(_refine_crossing(row, origin, time, ahead, guess, sign))
         time = ahead

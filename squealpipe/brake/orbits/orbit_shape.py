@@ -12,23 +12,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.brake.orbits.modal_flow import (
+    Rows,
     acceleration,
     advance,
     copy_state,
+    kernel,
     propagator,
 )
-from squealpipe.brake.orbits.shooting import shoot, shooting_limits
-from squealpipe.systems.compiled import compiled, part
+from squealpipe.brake.orbits.shooting import (
+    segments_room,
+    shoot,
+    state_room,
+    switches_room,
+)
+from squealpipe.systems.compiled import part
+from squealpipe.systems.taylor.kernels import Matrix, Vector
+from squealpipe.systems.taylor.memory import room
+
+_coefficients_room = room(8)
 
 
-@compiled
-def waveform(rows: Any, point: Any, phases: Any, out: Any) -> None:
+@kernel
+def waveform(rows: Rows, point: Vector, phases: Vector, out: Matrix) -> None:
     """Fill ``out`` (n, 4) with (x, y, vx, vy) at ascending phases θ = 2π t/T in [0, π]."""
-    segments, switches = (
-        np.empty((shooting_limits.segments, 9)),
-        np.empty(shooting_limits.segments),
-    )
-    final, start, scratch = np.empty(4), np.empty(4), np.empty(8)
+    segments, switches = segments_room(), switches_room()
+    final, start, scratch = state_room(), state_room(), _coefficients_room()
     count = shoot(rows, point[0], point[1], point[2], segments, switches, final)
     start[0], start[1], start[2], start[3] = point[0], point[1], 0.0, 0.0
     begin, leg = 0.0, 0
@@ -57,15 +65,12 @@ def _rates(row: Any, state: Any, kind: int) -> tuple[float, float, float]:
     return state[2], ax, jerk
 
 
-@compiled
-def extremes(rows: Any, point: Any, out: Any) -> None:
+@kernel
+def extremes(rows: Rows, point: Vector, out: Vector) -> None:
     """Fill ``out`` (6,) with the least and largest x, y and vx over half a period."""
-    segments, switches = (
-        np.empty((shooting_limits.segments, 9)),
-        np.empty(shooting_limits.segments),
-    )
-    final, start, state = np.empty(4), np.empty(4), np.empty(4)
-    scratch = np.empty(8)
+    segments, switches = segments_room(), switches_room()
+    final, start, scratch = state_room(), state_room(), _coefficients_room()
+    state = state_room()
     count = shoot(rows, point[0], point[1], point[2], segments, switches, final)
     start[0], start[1], start[2], start[3] = point[0], point[1], 0.0, 0.0
     begin = 0.0
@@ -105,7 +110,7 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
         begin = end
 
 
-@compiled
+@part
 def _turn(
     row: Any,
     start: Any,
@@ -119,7 +124,7 @@ def _turn(
 
     ``first`` has the sign of the slope just after ``before``.
     """
-    state = start.copy()
+    state = state_room()
     value = 0.0
     time = 0.5 * (before + after)
     # enough to halve the way out of the rest at an interval's end

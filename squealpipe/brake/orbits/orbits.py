@@ -176,9 +176,11 @@ class Across(PseudoArclength):
             np.empty(4),
         )
         unit = normal / length_of(normal)
-        count, iterations, residual = solve_constrained(
-            problem.rows, point, unit, self.settings.tolerance, *work, tangent
+        effort, settings = np.empty(2), self.settings
+        count = solve_constrained(
+            problem.rows, point, unit, settings.tolerance, *work, tangent, effort
         )
+        iterations, residual = int(effort[0]), float(effort[1])
         problem.work += (iterations + 1) * problem.fastest * abs(float(guess[2]))
         if count == 0:
             return None

@@ -5,12 +5,16 @@ rest again after T/2 closes after T. The flow between switches is exact, the fie
 across a switch, and the tangent map is therefore the plain product of the segments' maps.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from squealpipe.brake.orbits import modal_flow
-from squealpipe.systems.compiled import compiled, part
+from squealpipe.brake.orbits.modal_flow import Rows, kernel
+from squealpipe.systems.compiled import part
+from squealpipe.systems.taylor.kernels import Matrix, Vector
+from squealpipe.systems.taylor.memory import room
 
 
 class ShootingLimits(NamedTuple):
@@ -29,13 +33,17 @@ class ShootingLimits(NamedTuple):
 shooting_limits = ShootingLimits()
 # column of a segment, behind its eight coefficients, in which the side of the state stands
 _side_column = 8
+segments_room = room(shooting_limits.segments, 9)
+switches_room = room(shooting_limits.segments)
+state_room = room(4)
+_pair_room, _pair_of_rows_room = room(2), room(2, 3)
 
 
 @part
 def norm(vector: Any) -> float:
     """Euclidean norm of three components."""
     return float(
-        np.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+        math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
     )
 
 
@@ -45,21 +53,21 @@ def dot(left: Any, right: Any) -> float:
     return float(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
 
 
-@compiled
-def fastest(rows: Any) -> float:
+@kernel
+def fastest(rows: Rows) -> float:
     """Frequency of the fastest mode of either state."""
     return float(max(rows[0].omega2, rows[1].omega2))
 
 
-@compiled
+@kernel
 def shoot(
-    rows: Any,
+    rows: Rows,
     x0: float,
     y0: float,
     half_period: float,
-    segments: Any,
-    switches: Any,
-    final: Any,
+    segments: Matrix,
+    switches: Vector,
+    final: Vector,
 ) -> int:
     """Flow from rest at (x0, y0) over half a period.
 
@@ -96,8 +104,8 @@ def shoot(
     return 0
 
 
-@compiled
-def push(rows: Any, segments: Any, count: int, vector: Any) -> None:
+@kernel
+def push(rows: Rows, segments: Matrix, count: int, vector: Vector) -> None:
     """Carry a tangent vector through the segments of a shot, in place."""
     for index in range(count):
         modal_flow.apply(
@@ -105,11 +113,11 @@ def push(rows: Any, segments: Any, count: int, vector: Any) -> None:
         )
 
 
-@compiled
-def stability_index(rows: Any, segments: Any, count: int) -> float:
+@kernel
+def stability_index(rows: Rows, segments: Matrix, count: int) -> float:
     """trace M − 2 of the monodromy M = Φ1 … Φn Φn … Φ1 (reversibility gives the second half)."""
     trace = 0.0
-    vector = np.empty(4)
+    vector = state_room()
     for column in range(4):
         for index in range(4):
             vector[index] = 1.0 if index == column else 0.0
@@ -122,15 +130,15 @@ def stability_index(rows: Any, segments: Any, count: int) -> float:
     return trace - 2.0
 
 
-@compiled
+@kernel
 def rest_conditions(
-    rows: Any,
-    point: Any,
-    segments: Any,
-    switches: Any,
-    residual: Any,
-    jacobian: Any,
-    final: Any,
+    rows: Rows,
+    point: Vector,
+    segments: Matrix,
+    switches: Vector,
+    residual: Vector,
+    jacobian: Matrix,
+    final: Vector,
 ) -> int:
     """End velocities of a shot and their derivatives by (x0, y0, T/2).
 
@@ -140,7 +148,7 @@ def rest_conditions(
     if count == 0:
         return 0
     residual[0], residual[1] = final[2], final[3]
-    vector = np.empty(4)
+    vector = state_room()
     for column in range(2):
         for index in range(4):
             vector[index] = 1.0 if index == column else 0.0
@@ -151,17 +159,18 @@ def rest_conditions(
     return count
 
 
-@compiled
+@kernel
 def solve_constrained(
-    rows: Any,
-    point: Any,
-    constraint: Any,
+    rows: Rows,
+    point: Vector,
+    constraint: Vector,
     tolerance: float,
-    segments: Any,
-    switches: Any,
-    final: Any,
-    tangent: Any,
-) -> tuple[int, int, float]:
+    segments: Matrix,
+    switches: Vector,
+    final: Vector,
+    tangent: Vector,
+    effort: Vector,
+) -> int:
     """Newton's method for rest at both ends together with constraint · (z − z_start) = 0.
 
     Args:
@@ -169,16 +178,18 @@ def solve_constrained(
         constraint: (3,) fixes the third unknown; (0, 1, 0) keeps y0.
         tolerance: of the end velocities; 0 goes on until round-off stops the progress.
         tangent: (3,) filled with the branch direction at the solution, unit length.
+        effort: (2,) filled with the number of iterations and the residual, the largest end
+            velocity.
 
     Returns:
-        (segments, iterations, residual); segments = 0 where it did not converge. The residual
-        is the largest end velocity.
+        The number of segments, or 0 where it did not converge.
     """
-    residual, jacobian = np.empty(2), np.empty((2, 3))
-    previous = np.inf
-    best0, best1, best2 = point[0], point[1], point[2]
     # Newton's method from a start that is close has long converged by then; others wander off
     most_newton_steps = 12
+    effort[0], effort[1] = most_newton_steps, np.inf
+    residual, jacobian = _pair_room(), _pair_of_rows_room()
+    previous = np.inf
+    best0, best1, best2 = point[0], point[1], point[2]
     for iteration in range(most_newton_steps):
         count = rest_conditions(
             rows, point, segments, switches, residual, jacobian, final
@@ -205,7 +216,8 @@ def solve_constrained(
             if error > previous:
                 point[0], point[1], point[2] = best0, best1, best2
                 count = shoot(rows, best0, best1, best2, segments, switches, final)
-            return count, iteration, max(abs(final[2]), abs(final[3]))
+            effort[0], effort[1] = iteration, max(abs(final[2]), abs(final[3]))
+            return count
         previous = error
         determinant = dot(constraint, tangent)
         if determinant == 0.0:
@@ -219,4 +231,4 @@ def solve_constrained(
         point[2] += (constraint[0] * w1 - constraint[1] * w0) / determinant
         if not point[2] > 0.0:
             break
-    return 0, most_newton_steps, np.inf
+    return 0

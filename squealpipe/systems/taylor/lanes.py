@@ -188,7 +188,7 @@ def compile_advance(
     """
     signature = types.intp(types.voidptr)
     address = address_of_entry(
-        advance, signature, _sources(folder), vectorize=vectorize
+        advance, signature, sources_of(folder), vectorize=vectorize
     )
     return ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(address)
 
@@ -201,7 +201,7 @@ def compile_called(function: Callable[..., Any], words: int, folder: Path) -> in
         folder: one whose sources count beside this one's.
     """
     signature = types.void(*[types.intp] * words)
-    return address_of_entry(function, signature, _sources(folder))
+    return address_of_entry(function, signature, sources_of(folder))
 
 
 def invoke(address: int, *words: int) -> None:
@@ -211,10 +211,10 @@ def invoke(address: int, *words: int) -> None:
 
 
 @cache
-def _sources(folder: Path | None) -> bytes:
+def sources_of(folder: Path | None) -> bytes:
+    """Return the sources of this folder and of another one, and of how parts are compiled."""
     folders = [Path(__file__).parent, *([] if folder is None else [folder])]
     paths = [path for each in folders for path in sorted(each.glob("*.py"))]
-    # how parts are compiled is said there
     return b"".join(path.read_bytes() for path in (Path(compiled.__file__), *paths))
 
 

@@ -24,7 +24,7 @@ from numba.core.registry import cpu_target
 from numba.core.runtime.nrt import rtsys
 
 from squealpipe.systems.compiled import store_folder, timed_compilation
-from squealpipe.systems.taylor.one_module import compile_entry
+from squealpipe.systems.taylor.one_module import compile_entries
 
 _llvm: Any = llvmlite.binding
 _config: Any = numba.config
@@ -77,7 +77,8 @@ def address_of(write: Write, n_arguments: int, content: bytes) -> int:
         write: writes its body, for a builder and the arguments.
         content: all that decides what ``write`` writes.
     """
-    return _address(content, lambda name: _compiled(name, write, n_arguments))
+    found = _addresses_of(content, lambda name: _compiled(name, write, n_arguments))
+    return found[0]
 
 
 def address_of_entry(
@@ -87,51 +88,66 @@ def address_of_entry(
     *,
     vectorize: bool = True,
 ) -> int:
-    """Return the address of a C function that numba writes, compiled or taken from the store.
+    """Return the address of a C function as :func:`addresses_of_entries` does."""
+    entries = [(function, signature)]
+    return addresses_of_entries(entries, content, vectorize=vectorize)[0]
+
+
+def addresses_of_entries(
+    entries: Sequence[tuple[Callable[..., Any], Any]],
+    content: bytes,
+    *,
+    vectorize: bool = True,
+) -> list[int]:
+    """Return the addresses of C functions that numba writes, compiled or taken from the store.
 
     Args:
-        content: all sources that the function is made of.
+        entries: functions and their signatures.
+        content: all sources that the functions are made of.
         vectorize: let LLVM look for loops over numbers side by side.
     """
-    name = f"{function.__module__}.{function.__qualname__}{signature}"
-    return _address(
-        name.encode() + content,
-        lambda _: compile_entry(function, signature, vectorize=vectorize),
+    names = [f"{each.__module__}.{each.__qualname__}{kind}" for each, kind in entries]
+    return _addresses_of(
+        "".join(names).encode() + content,
+        lambda _: compile_entries(entries, vectorize=vectorize),
     )
 
 
-def _address(content: bytes, compile_: Callable[[str], tuple[str, bytes]]) -> int:
-    """Return the address of a function that is made of some content."""
+_Compile = Callable[[str], tuple[list[str], bytes]]
+
+
+def _addresses_of(content: bytes, compile_: _Compile) -> list[int]:
+    """Return the addresses of functions that are made of some content."""
     versions = f"{llvmlite_version}{LEVEL}{_processor()}"
     content = versions.encode() + Path(__file__).read_bytes() + content
-    address: int = _loaded(hashlib.sha256(content).hexdigest(), compile_)
-    return address
+    addresses: list[int] = _loaded(hashlib.sha256(content).hexdigest(), compile_)
+    return addresses
 
 
-_addresses: dict[str, int] = {}
+_addresses: dict[str, list[int]] = {}
 
 
 @_only_one_thread  # type: ignore[untyped-decorator]
-def _loaded(digest: str, compile_: Callable[[str], tuple[str, bytes]]) -> int:
-    """Return the address of a function, by a digest that names it."""
+def _loaded(digest: str, compile_: _Compile) -> list[int]:
+    """Return the addresses of functions, by a digest that names them."""
     if digest not in _addresses:
         path = Path(store_folder("written", b"")) / f"{digest}.o"
         stored = _kept(path)
         if stored is None:
             with timed_compilation():
-                name, code = compile_(f"written_{digest}")
-            _keep(path, name.encode() + b"\0" + code)
+                names, code = compile_(f"written_{digest}")
+            _keep(path, "\n".join(names).encode() + b"\0" + code)
         else:
             encoded, _, code = stored.partition(b"\0")
-            name = encoded.decode()
+            names = encoded.decode().split("\n")
         engine = _engine()
         engine.add_object_file(_llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
-        _addresses[digest] = engine.get_function_address(name)
+        _addresses[digest] = [engine.get_function_address(name) for name in names]
     return _addresses[digest]
 
 
-def _compiled(name: str, write: Write, n_arguments: int) -> tuple[str, bytes]:
+def _compiled(name: str, write: Write, n_arguments: int) -> tuple[list[str], bytes]:
     """Return name and object file of one function."""
     machine = _machine()
     module = ir.Module(name)
@@ -152,7 +168,7 @@ def _compiled(name: str, write: Write, n_arguments: int) -> tuple[str, bytes]:
     tuning.loop_unrolling = tuning.loop_interleaving = False
     passes = _llvm.create_pass_builder(machine, tuning)
     passes.getModulePassManager().run(parsed, passes)
-    return name, machine.emit_object(parsed)
+    return [name], machine.emit_object(parsed)
 
 
 def _kept(path: Path) -> bytes | None:

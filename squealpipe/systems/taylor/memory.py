@@ -7,11 +7,13 @@ Invariant: compiled code writes into no table, so that LLVM may keep what it has
 """
 
 from collections.abc import Mapping
+from math import prod
 from typing import Any
 
 import numpy as np
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.core.typing import templates
 from numba.extending import intrinsic, lower_getattr_generic, models, register_model
 from numba.np import arrayobj
@@ -24,6 +26,7 @@ _AttributeTemplate: Any = templates.AttributeTemplate
 _infer_getattr: Any = templates.infer_getattr
 _lower: Any = lower_getattr_generic
 _arrays: Any = arrayobj
+_cgutils: Any = cgutils
 _word = ir.IntType(64)
 
 
@@ -107,6 +110,30 @@ def table_viewer(name: str, record: np.dtype, arrays: Mapping[str, Any]) -> Any:
             return builder.inttoptr(values[0], _word.as_pointer())
 
         return table(types.intp), generate
+
+    return intrinsic(at)
+
+
+def room(*shape: int) -> Any:
+    """Return a compiled function that makes an array, which lasts as long as what calls it."""
+    kind = types.Array(types.float64, len(shape), "C")
+
+    def at(typing_context: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            row = ir.ArrayType(ir.DoubleType(), prod(shape))
+            array: Any = _arrays.make_array(kind)(context, builder)
+            data = builder.bitcast(_cgutils.alloca_once(builder, row), array.data.type)
+            sizes = [ir.Constant(_word, size) for size in shape]
+            strides = [
+                ir.Constant(_word, 8 * prod(shape[axis + 1 :]))
+                for axis in range(len(shape))
+            ]
+            _arrays.populate_array(
+                array, data, sizes, strides, itemsize=8, meminfo=None
+            )
+            return array._getvalue()  # noqa: SLF001
+
+        return kind(), generate
 
     return intrinsic(at)
 

@@ -10,7 +10,7 @@ results are the same to the last bit.
 Cost: of what is left a third each is LLVM's and for writing LLVM's code, a tenth for types.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache, partial
 from typing import Any
@@ -94,10 +94,11 @@ class _Parts(_Codegen):  # type: ignore[misc]
         tuning.loop_unrolling = False
         return _llvm.create_pass_builder(self._tm, tuning)
 
-    def compiled(self, library: _Part, name: str) -> bytes:
-        """Return the object file of a function with all that it calls."""
+    def compiled(self, library: _Part, names: Sequence[str]) -> bytes:
+        """Return the object file of some functions with all that they call."""
         library._final_module = library._get_module_for_linking()  # noqa: SLF001
-        library.get_function(name).linkage = "external"
+        for name in names:
+            library.get_function(name).linkage = "external"
         library._optimize_final_module()  # noqa: SLF001
         code: bytes = self._tm.emit_object(library._final_module)  # noqa: SLF001
         return code
@@ -150,20 +151,26 @@ def only_written() -> Iterator[None]:
         _arrays.make_array = usual_array
 
 
-def compile_entry(
-    function: Callable[..., Any], signature: Any, *, vectorize: bool
-) -> tuple[str, bytes]:
-    """Return the name and the object file of a C function that numba writes.
+def compile_entries(
+    entries: Sequence[tuple[Callable[..., Any], Any]], *, vectorize: bool
+) -> tuple[list[str], bytes]:
+    """Return the names and the object file of C functions that numba writes.
 
     The caller holds numba's lock.
 
     Args:
+        entries: functions and their signatures.
         vectorize: let LLVM look for loops over numbers side by side.
     """
     _parts().vectorizes = vectorize
     with only_written():
-        entry = _numba.cfunc(
-            signature, error_model="numpy", pipeline_class=KernelCompiler
-        )(function)
-    library = entry._library  # noqa: SLF001 (numba's own store reads it, too)
-    return entry.native_name, _parts().compiled(library, entry.native_name)
+        written = [
+            _numba.cfunc(signature, error_model="numpy", pipeline_class=KernelCompiler)(
+                function
+            )
+            for function, signature in entries
+        ]
+    names = [entry.native_name for entry in written]
+    library, *others = (entry._library for entry in written)  # noqa: SLF001 (numba's store reads it)
+    library._linking_libraries += others  # noqa: SLF001
+    return names, _parts().compiled(library, names)

@@ -219,6 +219,10 @@ first_bit: Any = _intrinsic(
 """Position of the lowest bit that is set."""
 load: Any = _intrinsic(lanes, (types.intp,), _load)
 """The row at an address."""
+word: Any = _intrinsic(types.int64, (types.intp,), _whole)
+"""The integer at an address."""
+number: Any = _intrinsic(types.float64, (types.intp,), _number)
+"""The number at an address."""
 store: Any = _intrinsic(types.void, (types.intp, lanes), _store)
 """Write a row to an address."""
 splat: Any = _intrinsic(lanes, (types.float64,), _splat)

@@ -1,16 +1,19 @@
 """The first root of a step's polynomial: known roots, grazing pairs, near misses."""
 
+from pathlib import Path
+from typing import Annotated, Any
+
 import numpy as np
 import pytest
 
-from squealpipe.systems.compiled import compiled
+from squealpipe.systems.taylor.kernels import Kernels
 from squealpipe.systems.taylor.roots import first_root, root_search
 
 ORDER, STEP = 15, 0.7
 
 
-@compiled
-def _first(coefficients, step):
+@Kernels(Path(__file__).parent)
+def _first(coefficients: Annotated[Any, np.dtype(float), 3], step: float) -> float:
     return first_root(coefficients, 0, 0, step)[0]
 
 
