@@ -23,6 +23,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import ScalarFormatter
 
 from squealpipe.parameters import TABLE
+from squealpipe.plotting.text_layouts import laid_out_once
 from squealpipe.store.whole_files import whole_file
 from squealpipe.systems.inputs.words import as_people_write
 
@@ -308,6 +309,7 @@ def _resize(figure: Figure, size: tuple[float, float]) -> None:
         figure.set_layout_engine("compressed")  # a map in the middle of a wide picture
 
 
+@laid_out_once()
 def save_figure(
     figure: Figure,
     paths: Sequence[str | os.PathLike[str]],

@@ -99,3 +99,37 @@ def test_a_png_holds_the_pixels_that_matplotlib_writes(tmp_path):
         assert (ours.mode, ours.info["Software"]) == ("RGB", "squealpipe")
         assert ours.info["dpi"] == theirs.info["dpi"]
         np.testing.assert_array_equal(ours, theirs.convert("RGB"))
+
+
+def test_texts_of_another_look_are_laid_out_anew(tmp_path):
+    """A picture is that of Matplotlib, which lays out each text anew."""
+    looks = (
+        {"fontsize": 9},
+        {"fontweight": "bold"},
+        {"rotation": 30, "ha": "left"},
+        {"rotation": 30, "ha": "left", "rotation_mode": "anchor"},
+        {"ha": "left"},
+        {"va": "top"},
+        {"multialignment": "right"},
+        {"linespacing": 2.0},
+        {"parse_math": False},
+        {"wrap": True},
+        {"wrap": True},  # lines break according to the place
+        {"rotation": 30, "transform_rotates_text": True},
+    )
+
+    def drawn():
+        figure, axes = new_figure(6.0, 4.0)
+        axes[0, 0].set(xlim=(-1, 7), ylim=(0, 4), xlabel=r"$10^{-3}$ \$ 2")
+        for place, look in enumerate(({}, *looks, {})):
+            at = 2.0 * (place % 4), 0.5 + place // 4
+            words = "$x_1$ = $10^{-3}$\nlong" + 9 * " words" * look.get("wrap", False)
+            axes[0, 0].text(*at, words, **{"ha": "center", "va": "center", **look})
+        return figure
+
+    for name, save in (("ours", save_figure), ("plain", save_figure.__wrapped__)):
+        files = [tmp_path / f"{name}.png", tmp_path / f"{name}.svg"]
+        save(drawn(), files, dpi=72)  # of an SVG, too
+    for ending in ("png", "svg"):
+        ours, plain = (tmp_path / f"{name}.{ending}" for name in ("ours", "plain"))
+        assert ours.read_bytes() == plain.read_bytes()
