@@ -108,6 +108,29 @@ def test_grazing_curve_and_where_folds_meet_it(branch):
     assert (omega[0], omega[-1]) == pytest.approx(ENDS["omega"], abs=1e-12)
 
 
+def test_grazing_curve_starts_from_a_branch_that_first_touches_the_stop():
+    """Round-off showed a touch where the impact without speed is, and the curve had one point."""
+    omega, damping, gap = 1.7, 0.12, 1.27
+    settings = {"omega": omega, "damping": damping, "gap": gap, "restitution": 0.62}
+    grazes = gap * np.hypot(1.0 - omega**2, damping * omega)
+    forced = 0.8 * grazes / complex(1.0 - omega**2, damping * omega)
+    start = impact_oscillator.limit_cycle(
+        guess={"x": forced.real, "v": -omega * forced.imag},
+        amplitude=0.8 * grazes,
+        **settings,
+    )
+    through = impact_oscillator.cycle_branch("amplitude", 1.2 * grazes, start=start)
+    curve = curve_of("grazing", through, to={"omega": (1.5, 2.2)})
+    omega = curve.omega.values
+    exact = gap * np.hypot(1.0 - omega**2, damping * omega)
+    np.testing.assert_allclose(curve.amplitude, exact, rtol=1e-12)
+    assert ends(curve) == ["end_of_range", "end_of_range"]
+    # folds end where the stop is met twice in a period of the free oscillation
+    assert list(corners(curve)) == pytest.approx(
+        [2.0 * np.sqrt(1.0 - 0.25 * damping**2)], abs=1e-10
+    )
+
+
 def test_fold_curve_ends_on_the_grazing_curve_at_both_sides(branch):
     curve = curve_of("fold", branch)
     exact = [fold(omega) for omega in curve.omega.values]

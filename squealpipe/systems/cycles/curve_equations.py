@@ -253,7 +253,8 @@ def curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     near = {k: v for k, v in near.items() if label_of(cycle, {k: 0.0}) == label}
     if not near:
         raise ValueError(f"start: no condition of {label.name} just holds there")
-    own = min(near, key=lambda k: near[k])
+    # an event without speed also turns at the end of its leg, which round-off takes for a touch
+    own = min(near, key=lambda k: (k.kind == MarginKind.touch, near[k]))
     if own.kind != MarginKind.touch:
         return Curve(equations, label, own), cycle.point
     # the leg is cut where it touches: there the switch's event has no speed, if it stays there
