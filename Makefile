@@ -97,9 +97,10 @@ $(STUDY): requirements.lock requirements-pip.lock pyproject.toml
 	touch $@
 
 # 30 s of CPU time, which several first jobs or tests would otherwise spend at once; and byte code of what jobs
-# import, for those who may not write it
-COMPILE_LOOPS := $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli; \
-  from squealpipe.study.compiled_loops import compile_loops; compile_loops()"
+# import, for those who may not write it. To look for cyclic garbage in what is imported would take 1 s more.
+COMPILE_LOOPS := $(BIN)/python -c "import gc; gc.disable(); \
+  import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli; \
+  from squealpipe.study.compiled_loops import compile_loops; compile_loops(); gc.freeze()"
 $(KERNELS): $(STUDY)
 	$(COMPILE_LOOPS)
 	touch $@
