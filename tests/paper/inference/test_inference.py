@@ -1,6 +1,7 @@
 """Statements as constraints: closed forms, the shipped baseline and the rule that gave it."""
 
 import math
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -15,6 +16,7 @@ from squealpipe.paper.inference.constraints import (
     judge,
     measure,
     registered_constraints,
+    verdicts,
 )
 from squealpipe.paper.inference.inference import infer_parameters
 from squealpipe.paper.schema.inference import Holds, of_study
@@ -158,6 +160,35 @@ def test_the_pulling_contact_loses_exactly_what_a1_loses():
             whole, scene.alpha1, scene.alpha2, t_end=scene.t_end, tol=1e-9
         )
         np.testing.assert_array_equal(contact[name].margin < 0, run.separations > 0)
+
+
+def test_signs_of_the_contact_force_are_those_of_its_margins():
+    """A1 until it leaves the belt tells them, and where it hardly does the pulling contact."""
+    generator = np.random.default_rng(12)
+    groups = {
+        "kappa": generator.uniform(0.3, 1.3, 100),
+        "mu": generator.uniform(0.02, 0.8, 100),
+        "length_ratio": np.exp(generator.uniform(0.7, 4.6, 100)),
+        "speed_ratio": np.exp(generator.uniform(-2, 5, 100)),
+    }
+    for name in READINGS:
+        exact = sets_of(groups, tol=1e-9, workers=1).read(name)
+        signs = measure(replace(exact, exact=False), [Stage.contact])
+        for statement, wanted in measure(exact, [Stage.contact]).items():
+            verdict = verdicts(signs[statement])
+            np.testing.assert_array_equal(verdict, verdicts(wanted))
+            assert 0 < (verdict == Holds.yes).sum() < 100
+    kappa = np.linspace(0.51, 0.526, 5)
+    lowest = long_springs(k3=kappa, mu=0.3).contact["F2d"].margin
+    touch = np.interp(0.0, -lowest, kappa)
+    for _ in range(3):
+        near = touch + np.array([-1e-4, 1e-4])
+        lowest = long_springs(k3=near, mu=0.3).contact["F2d"].margin
+        touch = np.interp(0.0, -lowest, near)
+    hardly = long_springs(k3=[touch - 1e-6, touch + 1e-6], mu=0.3)
+    margins = replace(hardly, exact=False).contact["F2d"].margin
+    np.testing.assert_allclose(margins, hardly.contact["F2d"].margin, atol=1e-7)
+    assert margins[1] < 0.0 < margins[0]
 
 
 @pytest.mark.release
