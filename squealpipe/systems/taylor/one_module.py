@@ -12,14 +12,14 @@ Cost: of what is left a third each is LLVM's and for writing LLVM's code, a tent
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import Any
 
 import llvmlite.binding
 import numba
 from llvmlite import ir
 from llvmlite.binding import Linkage
-from numba.core import codegen
+from numba.core import codegen, postproc
 from numba.core.registry import cpu_target
 from numba.np import arrayobj
 
@@ -32,12 +32,29 @@ _Codegen: Any = codegen.JITCPUCodegen
 _target: Any = cpu_target
 _arrays: Any = arrayobj
 _llvm: Any = llvmlite.binding
+_PostProcessor: Any = postproc.PostProcessor
+_usual_lifetimes: Any = _PostProcessor.run
+
+
+def _lifetimes(processor: Any, emit_dels: bool = False, **options: Any) -> None:
+    """Note where variables end if counts of references need it; numba looks after each pass."""
+    processor.func_ir.generator_info = None
+    if emit_dels:
+        _usual_lifetimes(processor, emit_dels=True, **options)
 
 
 class _Part(_Library):  # type: ignore[misc]
     """Code of a function that is optimized and compiled only in what calls it."""
 
     _shared_module: Any
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Do what numba does, which builds LLVM's passes anew for each function that is named."""
+        ll_module.data_layout = self._codegen._data_layout  # noqa: SLF001
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes, builder = self._codegen.function_passes
+                passes.run(function, builder)
 
     def finalize(self) -> None:
         """Let several that call it be linked to one another."""
@@ -74,6 +91,11 @@ class _Parts(_Codegen):  # type: ignore[misc]
 
     _library_class = _Part
     vectorizes = True
+
+    @cached_property
+    def function_passes(self) -> Any:
+        """LLVM's passes over one function."""
+        return self._function_pass_manager()
 
     def set_env(self, env_name: str, env: Any) -> None:
         """Do nothing: code without Python's objects needs no environment."""
@@ -144,11 +166,13 @@ def only_written() -> Iterator[None]:
     usual, usual_array = context.codegen(), _arrays.make_array
     context._internal_codegen = _parts()  # noqa: SLF001 (has no public setter)
     _arrays.make_array = partial(partial, _Array)
+    _PostProcessor.run = _lifetimes
     try:
         yield
     finally:
         context._internal_codegen = usual  # noqa: SLF001
         _arrays.make_array = usual_array
+        _PostProcessor.run = _usual_lifetimes
 
 
 def compile_entries(
