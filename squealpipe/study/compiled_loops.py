@@ -1,8 +1,8 @@
 """Compile the engine's loops in two processes side by side, into the user's cache folder.
 
-Several first jobs, or tests, would otherwise compile the same at once. Loops that share functions
-are compiled by one process, since numba infers the types of a function once a process: the legs of
-a structure's cycle take 3 s of CPU time after its loop, and 7 s by themselves.
+Several first jobs, or tests, would otherwise compile the same at once. numba infers the types of a
+function once a process: what shares functions is compiled by one, and the loop of structures, which
+takes longest with what belongs to it, before the other is forked, whose event loop shares some.
 """
 
 from typing import Any
@@ -17,6 +17,7 @@ from squealpipe.systems.taylor import collocation, legs, loop
 
 def compile_loops() -> None:
     """Compile all loops that the cache does not hold yet."""
+    structures_loop.loop()
     run_shared(_compile, {}, jobs=2, workers=2)
 
 
@@ -34,7 +35,6 @@ def _compile_systems() -> None:
 
 
 def _compile_structures() -> None:
-    """Compile what integrates structures and follows their cycles."""
-    structures_loop.loop()
+    """Compile what the loop of structures calls, and what follows their cycles."""
     structures_loop.functions()
     structures_legs.run_legs()
