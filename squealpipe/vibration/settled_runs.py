@@ -5,8 +5,9 @@ time, until two in succession show the same verdict and agree by the rules of
 :mod:`squealpipe.vibration.settling`. Near an onset motions grow or decay slowly: a window that is
 too short to show this settles nothing. A motion is quiet only where it has become small, or decays
 as fast as small motions do; where forces are linear, a window in which no contact switches is such
-a decay at any size. An irregular motion that other starts have settled to is known again as soon as
-the last windows together have its statistics.
+a decay at any size, and where they nearly are it may be shown to be one. An irregular motion that
+other starts have settled to is known again as soon as the last windows together have its
+statistics.
 
 Invariant: what moves does not matter here. Pads and structures hand over starts with the growth
 rate of their small motions, and a callable that integrates some of them on for a length of time.
@@ -313,7 +314,7 @@ def _judged(
     if not now.finished:
         return None
     quiet = SettledRun(Verdict.quiet, now, 0.0)
-    if start.is_linear and start.rate < 0.0 and not now.switched:
+    if _surely_dies_out(start, now):
         return quiet
     if before is None:
         return None
@@ -403,6 +404,12 @@ def _lost_in_part(now: Windows) -> bool:
     """
     in_part = (now.separated > 0.0) & (now.separated < ALWAYS)
     return bool(now.losses or in_part.any() or (now.separated >= ALWAYS).all())
+
+
+def _surely_dies_out(start: Start, now: Windows) -> bool:
+    """Tell whether linear forces, or the decay that was seen, leave no doubt at any size."""
+    is_linear_decay = start.is_linear and start.rate < 0.0 and not now.switched
+    return bool(is_linear_decay or now.fades)
 
 
 def _dies_out(start: Start, before: Windows, now: Windows) -> bool:

@@ -28,6 +28,8 @@ class Windows:
         length: of the window, s.
         growth, late_growth: ln of the growth of a small perturbation in the window, and of that
             from its third to its last quarter; NaN where none was followed.
+        fades: whether the motion is shown to die out without another event, although it may still
+            be large.
     """
 
     final: np.ndarray
@@ -43,6 +45,7 @@ class Windows:
     length: np.ndarray
     growth: np.ndarray
     late_growth: np.ndarray
+    fades: np.ndarray
 
     def row(self, rows: Any) -> Self:
         """Return some of the runs, or one."""

@@ -39,6 +39,7 @@ def window(velocities, length=1.0, *, losses=5, switched=True):
         length=np.array([length]),
         growth=np.array([np.nan]),
         late_growth=np.array([np.nan]),
+        fades=np.array([False]),
     )
 
 

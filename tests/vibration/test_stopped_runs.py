@@ -29,7 +29,7 @@ def test_a_stop_keeps_the_windows_that_have_ended_and_runs_no_more():
     def advance(rows, _states, _begun, _seconds, turn):
         turns.append(turn)
         window = SimpleNamespace(
-            final=np.zeros(2), regimes=np.zeros(1, int), finished=True
+            final=np.zeros(2), regimes=np.zeros(1, int), finished=True, fades=False
         )
         return SimpleNamespace(
             regimes=np.zeros((len(rows), 1), int), row=lambda _: window

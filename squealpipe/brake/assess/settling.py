@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from squealpipe.brake.assess.fading import Fading
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.windows import run_windows
 from squealpipe.brake.models.damped import is_undamped
@@ -11,6 +12,7 @@ from squealpipe.brake.schema.assess import KICKS
 from squealpipe.vibration.settled_runs import Horizon, Quietness, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import Settling, settling_of_verdicts
+from squealpipe.vibration.windows import joined
 
 PUSH = 0.01
 """Push of steady sliding, over the static compression."""
@@ -94,6 +96,21 @@ def settle(
         turn: int,  # noqa: ARG001
     ) -> object:
         designs = [starts[row].subject for row in rows]
-        return run_windows(designs, states, seconds, rules, tol=tol)
+        probes = Fading.periods * np.array([design.period for design in designs])
+        # where nothing but a slow decay may happen a short run shows that
+        decays = np.array([starts[row].rate < 0.0 for row in rows])
+        slow = np.flatnonzero(decays & (seconds >= Fading.worth * probes))
+        if rules.follows_perturbation or not slow.size:
+            return run_windows(designs, states, seconds, rules, tol=tol)
+        some = [designs[place] for place in slow]
+        probed = run_windows(some, states[slow], probes[slow], rules, tol=tol)
+        shown = np.flatnonzero(probed.fades)
+        left = np.setdiff1d(np.arange(len(rows)), slow[shown])
+        parts = [(slow[shown], probed.row(shown))]
+        if left.size:
+            others = [designs[place] for place in left]
+            ran = run_windows(others, states[left], seconds[left], rules, tol=tol)
+            parts.append((left, ran))
+        return joined(parts)
 
     return settle_runs(starts, advance, Horizon.of(starts, most), rules)

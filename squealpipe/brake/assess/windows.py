@@ -11,7 +11,8 @@ from squealpipe.brake.a1.ensemble import (
     Ensemble,
     run_ensemble,
 )
-from squealpipe.brake.assess.sliding import Design
+from squealpipe.brake.assess.fading import dies_out
+from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.laws.tables import is_table
 from squealpipe.parameters import TABLE
 from squealpipe.schema import Outcome
@@ -36,10 +37,9 @@ def run_windows(
     """
     parts = []
     for rows in _alike(designs):
-        run = _ensemble(
-            [designs[row] for row in rows], starts[rows], lengths[rows], rules, tol
-        )
-        parts.append((rows, _statistics(run, lengths[rows], rules)))
+        alike = [designs[row] for row in rows]
+        run = _ensemble(alike, starts[rows], lengths[rows], rules, tol)
+        parts.append((rows, _statistics(run, alike, lengths[rows], rules)))
     return joined(parts)
 
 
@@ -90,7 +90,9 @@ def _ensemble(
     )
 
 
-def _statistics(run: Ensemble, lengths: np.ndarray, rules: Settling) -> Windows:
+def _statistics(
+    run: Ensemble, designs: Sequence[Design], lengths: np.ndarray, rules: Settling
+) -> Windows:
     # a run that ends early has no states from there on
     known = np.isfinite(run.samples[..., 2:])
     square = np.where(known, run.samples[..., 2:], 0.0) ** 2
@@ -108,6 +110,13 @@ def _statistics(run: Ensemble, lengths: np.ndarray, rules: Settling) -> Windows:
             )
         )
         growth, late = run.log_growth, late_growth(run.sample_log_growth.T)
+    switched = run.separations + run.sticks + run.reversals + run.contacts > 0
+    slides = finished & ~switched & (not rules.follows_perturbation)
+    fades = np.zeros(lengths.size, bool)
+    for row in np.flatnonzero(slides).tolist():
+        sliding = Sliding.of(designs[row])
+        if sliding is not None:
+            fades[row] = dies_out(sliding, run.samples[row], float(lengths[row]))
     return Windows(
         final=run.final_state,
         regimes=np.zeros((lengths.size, 1), int),
@@ -117,11 +126,12 @@ def _statistics(run: Ensemble, lengths: np.ndarray, rules: Settling) -> Windows:
         stuck=stuck[:, None],
         separations=run.separations[:, None],
         forces=run.peak_contact_force[:, None],
-        switched=run.separations + run.sticks + run.reversals + run.contacts > 0,
+        switched=switched,
         finished=finished,
         length=lengths,
         growth=growth,
         late_growth=late,
+        fades=fades,
     )
 
 

@@ -93,6 +93,7 @@ def still(plant: Plant) -> StructureWindows:
         length=np.ones(()),
         growth=np.array(np.nan),
         late_growth=np.array(np.nan),
+        fades=np.array(False),
     )
 
 
@@ -348,6 +349,7 @@ def statistics_of(
         block_ends=lengths[:, None] * np.arange(1, blocks + 1) / blocks,
         finished=raw["outcome"] == Outcome.converged,
         length=lengths,
+        fades=np.zeros(size, bool),
         growth=np.full(size, np.nan),
         late_growth=np.full(size, np.nan),
     )
