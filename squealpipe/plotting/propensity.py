@@ -145,6 +145,10 @@ def draw_shares(axes: Axes, spread: xr.Dataset) -> None:
         ecolor=style.Colour.grey,
         height=0.6,
     )
-    axes.set_yticks(place, names)
+    # a bar of less than a pixel looks like none
+    shares = [
+        f"{name}\n{100.0 * each:.3g} %" for name, each in zip(names, share, strict=True)
+    ]
+    axes.set_yticks(place, shares)
     axes.invert_yaxis()
     axes.set(xlabel="share", xlim=(0, 1))
