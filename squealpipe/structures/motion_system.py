@@ -332,17 +332,31 @@ class Scale(NamedTuple):
         )
 
 
-def regime_codes(system: System, contacts: Sequence[str]) -> np.ndarray:
+def regime_codes(
+    system: System, contacts: Sequence[str], belt: np.ndarray
+) -> np.ndarray:
     """Return the code of ``Regime`` of each regime of a structure's system.
+
+    The system counts slower and faster along the tangential direction of a contact, codes along
+    the belt's own motion.
 
     Args:
         contacts: names, in the order of the components.
+        belt: velocity of the belt along the tangential direction of each contact, (contacts,).
     """
     # of contacts c and c_2, regime c_2_stick is one of the latter; pieces of tables have numbers
+    owners = np.asarray(system.traced.component_of)
     names = [
         name.removeprefix(f"{contacts[owner]}_")
-        for name, owner in zip(system.regimes, system.traced.component_of, strict=True)
+        for name, owner in zip(system.regimes, owners, strict=True)
     ]
-    return np.array(
+    codes = np.array(
         [next(code for code in Regime if name.startswith(code.name)) for name in names]
     )
+    slower, faster = codes == Regime.slip_slower, codes == Regime.slip_faster
+    against = np.asarray(belt)[owners] < 0.0
+    codes[against & slower], codes[against & faster] = (
+        Regime.slip_faster,
+        Regime.slip_slower,
+    )
+    return codes

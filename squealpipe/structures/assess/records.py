@@ -77,7 +77,7 @@ def _record(
     kinds = list(traced.kinds)
     samples = row["samples"]
     forces = plant.normal_forces(samples)
-    codes = regime_codes(plant.system, plant.contacts)
+    codes = regime_codes(plant.system, plant.contacts, plant.belt)
     now = codes[np.maximum(row["sample_regimes"], 0)]
     logged = int(min(row["n_events"], Measurement.most_events))
 

@@ -386,11 +386,16 @@ class Plant:
             return motion
         nearing = motion[..., : self.size] @ structure.normals
         force = np.maximum(structure.pressing(nearing), 0.0)
-        direction = np.sign(structure.speeds * structure.belt_speed)
+        direction = np.sign(self.belt)
         friction = direction * structure.mu_of_contacts * force
         chosen = springs > 0.0
         stretches = friction[..., chosen] / springs[chosen]
         return np.concatenate([motion, stretches], axis=-1)
+
+    @property
+    def belt(self) -> np.ndarray:
+        """Velocity of the belt along the tangential direction of each contact, m/s."""
+        return self.structure.speeds * self.structure.belt_speed
 
     def contact_speeds(self, states: np.ndarray) -> np.ndarray:
         """Speed of vibration of each contact point, (…, contacts), m/s."""
@@ -400,8 +405,7 @@ class Plant:
 
     def contact_motions(self, amplitudes: np.ndarray) -> np.ndarray:
         """Displacements or velocities along and across the belt, (…, contacts, 2)."""
-        belt = np.sign(self.structure.speeds * self.structure.belt_speed)
-        along = amplitudes @ (self.structure.tangentials * belt)
+        along = amplitudes @ (self.structure.tangentials * np.sign(self.belt))
         across = amplitudes @ self.structure.normals
         return np.stack([along, across], axis=-1)
 

@@ -81,13 +81,14 @@ def squealing_run(
         for name in ("q", "v")
     )
     contacts = [contact.name for contact in reduced.contacts]
+    codes = regime_codes(system, contacts, reduced.speeds * reduced.belt_speed)
     forces = [run[f"{name}_normal_force"].values for name in contacts]
     return _dataset(
         reduced,
         (q, v),
         np.stack(forces, axis=1),
         # a single component has no dimension of its own
-        regime_codes(system, contacts)[run.regime.values].reshape(-1, len(contacts)),
+        codes[run.regime.values].reshape(-1, len(contacts)),
         times,
         attractor=chosen,
         dominant_frequency=frequency,

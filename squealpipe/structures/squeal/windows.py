@@ -357,7 +357,7 @@ def statistics_of(
 
 def _regimes(plant: Plant, regime: Regime) -> list[np.ndarray]:
     """Return, for each contact, the numbers of its regimes of a kind."""
-    codes = regime_codes(plant.system, plant.contacts)
+    codes = regime_codes(plant.system, plant.contacts, plant.belt)
     owners = np.asarray(plant.system.traced.component_of)
     return [
         np.flatnonzero((codes == regime) & (owners == index))

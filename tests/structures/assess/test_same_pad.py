@@ -5,6 +5,7 @@ import pytest
 
 from squealpipe import Contact, Parameters, Structure, assess
 from squealpipe.brake.assess.assess import judge
+from squealpipe.codes import Regime
 from squealpipe.structures.assess.assess import judge_structure
 
 LEVELS = (
@@ -107,6 +108,26 @@ def test_pads_as_parameters_and_as_matrices_have_one_level():
             structure_of(pad, *angles), samples=0, seed=0, tol=1e-12, workers=1
         ).without_cures()
         check_levels(one, other, seed)
+
+
+def test_slip_is_told_along_the_belts_own_motion():
+    """A contact whose direction is reversed as well as the belt is the same one."""
+    pad = Parameters(
+        mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.714e-4, mu=0.6, belt_speed=1.0,
+        length1=1e4, length2=1e4, damping1=42.4, damping2=42.4,
+    )  # fmt: skip
+    along = structure_of(pad, *np.radians((30.0, 60.0)))
+    contact = along.contacts[0]
+    reversed_ = Contact("pad", {1: 1.0}, {0: -1.0}, contact.stiffness, contact.preload)
+    against = along.with_(contacts=[reversed_], belt_speed=-pad.belt_speed)
+    one, other = (
+        judge_structure(each, samples=0, seed=0, tol=1e-10, workers=1).without_cures()
+        for each in (along, against)
+    )
+    known = np.isfinite(one.path_x.values)
+    regimes = one.path_regime.values[known]
+    np.testing.assert_array_equal(other.path_regime.values[known], regimes)
+    assert (regimes == Regime.slip_slower).mean() > 0.5
 
 
 @pytest.mark.release
