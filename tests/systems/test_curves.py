@@ -8,6 +8,7 @@ from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.systems.branch_labels import Meeting
 from squealpipe.systems.shipped.belt_friction import exponential_oscillator
+from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 
 DAMPING, GAP, RESTITUTION = 0.1, 1.0, 0.8
@@ -257,3 +258,19 @@ def test_what_cannot_be_followed_is_refused(branch, given, message):
     } | given
     with pytest.raises(ValueError, match=message):
         impact_oscillator.cycle_curve(**call)
+
+
+@pytest.mark.parametrize("to", [0.3, 2.0])
+def test_onsets_of_stick_of_a_symmetric_motion_end_where_the_push_no_longer_falls(to):
+    """The condition at the other reversal is zero all along: its sign ended curves 2 % early."""
+    start = dry_friction_oscillator.limit_cycle(omega=0.95)
+    branch = dry_friction_oscillator.cycle_branch("omega", to, start=start)
+    curve = dry_friction_oscillator.cycle_curve(
+        "stick_onset", ("omega", "force"), start=branch, to={"omega": (0.3, 1.8)}
+    )
+    slowest = curve.isel(point=int(curve.omega.argmin()))
+    # at a reversal push + 1 and its rate both vanish: closed form of half a period without stick
+    expected = 0.47593188, 4.02759878
+    assert (float(slowest.omega), float(slowest.force)) == pytest.approx(
+        expected, abs=1e-8
+    )

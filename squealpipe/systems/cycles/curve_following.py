@@ -196,7 +196,13 @@ class _Way:
             ends.append(_End(share, met, why))
         least, key = self.curve.least_margin(point)
         if least < -ZERO_ROUND_OFF and key is not None:
-            share = line.root(lambda there, _: self.curve.least_margin(there.point)[0])
+            # a margin that vanishes all along, as that of a symmetric motion's other event, has
+            # the sign of round-off
+            start = self.curve.least_margin(line.known[0.0][0].point)[0]
+            slack = ZERO_ROUND_OFF if start <= ZERO_ROUND_OFF else 0.0
+            share = line.root(
+                lambda there, _: self.curve.least_margin(there.point)[0] + slack
+            )
             share = 0.0 if share is None else share
             state, cycle = line.at(share)
             first = self.curve.least_margin(state.point)[1]
