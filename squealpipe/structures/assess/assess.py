@@ -289,7 +289,7 @@ def _of_small_motions(design: Design, plant: Plant) -> dict[str, Any]:
         "sliding_growth_rate": float(growth.max()),
         "mode_frequency": plant.frequencies,
         "leading_frequency": float(plant.frequencies[growth.argmax()]),
-        "contact_sliding_force": plant.spectrum.state.force,
+        "contact_sliding_force": plant.sliding_forces,
         "degrees_of_freedom": design.given.size,
         "is_undamped": plant.is_undamped,
         "n_modes": plant.size,

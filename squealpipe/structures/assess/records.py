@@ -35,7 +35,7 @@ def levels(
         begin=(settled.last.final, settled.last.regimes),
         period=1.0 / plant.slowest,
         loads=plant.pressed,
-        sliding_forces=plant.spectrum.state.force,
+        sliding_forces=plant.sliding_forces,
     )
 
 

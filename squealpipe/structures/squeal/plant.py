@@ -25,6 +25,7 @@ from squealpipe.structures.reduction import (
     reduce,
 )
 from squealpipe.structures.schema.squealing import SquealLimits
+from squealpipe.structures.sliding import steady_sliding
 from squealpipe.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.systems.linear.matrices import Caps
 from squealpipe.systems.one_thread import one_thread
@@ -251,6 +252,18 @@ class Plant:
         if origin is None:
             return None
         return origin.truth or Truth.of(origin.whole, origin.frequency_max)
+
+    @cached_property
+    def sliding_forces(self) -> np.ndarray:
+        """Contact forces of steady sliding, N; of the whole where this is reduced from one.
+
+        Modes at rest without static responses lack a part of each contact's compliance.
+        """
+        origin, state = self.structure.reduced_from, self.spectrum.state
+        if origin is None:
+            return state.force
+        mu = self.structure.mu_of_contacts
+        return steady_sliding(origin.whole, mu, state.belt_speed).force
 
     @cached_property
     def enough(self) -> int | None:

@@ -305,7 +305,7 @@ def _of_whole(plant: Plant) -> dict[str, Any]:
         "static_responses": plant.structure.record.get("static_responses", 0),
         "frequency_error": agreement.errors.frequency,
         "growth_rate_error": agreement.errors.growth,
-        "sliding_force": plant.spectrum.state.force,
+        "sliding_force": plant.sliding_forces,
     }
 
 

@@ -83,7 +83,7 @@ def still(plant: Plant) -> StructureWindows:
         stuck=contacts,
         separations=contacts,
         landings=contacts,
-        forces=plant.spectrum.state.force,
+        forces=plant.sliding_forces,
         switched=np.array(False),
         events=np.zeros((), int),
         steps=np.zeros((), int),
