@@ -268,7 +268,7 @@ def test_onsets_of_stick_of_a_symmetric_motion_end_where_the_push_no_longer_fall
     curve = dry_friction_oscillator.cycle_curve(
         "stick_onset", ("omega", "force"), start=branch, to={"omega": (0.3, 1.8)}
     )
-    slowest = curve.isel(point=int(curve.omega.argmin()))
+    slowest = curve.isel(point=int(curve.omega.values.argmin()))
     # at a reversal push + 1 and its rate both vanish: closed form of half a period without stick
     expected = 0.47593188, 4.02759878
     assert (float(slowest.omega), float(slowest.force)) == pytest.approx(
