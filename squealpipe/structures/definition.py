@@ -22,6 +22,7 @@ from squealpipe.structures.friction import Friction, default_mu, friction_of, ha
 from squealpipe.structures.matrices import checked_mass, real_square, sum_of_products
 from squealpipe.structures.meshes.faces import Rotation
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
+from squealpipe.structures.pencil import sparse_rows
 from squealpipe.structures.speed_terms import SpeedTerms
 from squealpipe.systems.inputs.values import brief, numbers_in_si
 from squealpipe.systems.inputs.words import says_what_was_meant
@@ -344,7 +345,7 @@ class ContactStructure:
         """K + Σ kᵢ nᵢnᵢᵀ without what changes with speed, the symmetric part."""
         springs = sum_of_products(self.normals * self.stiffnesses, self.normals)
         whole = self.given_stiffness + springs + self.speed_terms.still("stiffness")
-        return sp.csr_array(0.5 * (whole + whole.T))
+        return sparse_rows(0.5 * (whole + whole.T))
 
     def _load(self, load: Any) -> np.ndarray:
         if load is None:

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.pencil import DENSE, LowRank, Pencil, Uncertain
+from squealpipe.structures.pencil import DENSE, LowRank, Pencil, Uncertain, sparse_rows
 from squealpipe.structures.sliding import (
     SlidingBalance,
     SteadySliding,
@@ -65,6 +65,8 @@ def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain |
 
 
 def _tidy(matrix: Any) -> sp.csr_array:
+    if isinstance(matrix, np.ndarray):  # of few degrees of freedom
+        return sparse_rows(matrix)
     tidy = sp.csr_array(matrix, copy=True)
     tidy.sum_duplicates()
     tidy.eliminate_zeros()

@@ -8,7 +8,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from squealpipe.structures.pencil import DENSE
+from squealpipe.structures.pencil import DENSE, sparse_rows
 from squealpipe.systems.inputs.values import brief
 
 
@@ -34,7 +34,7 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
     # entries at one place are added up as floats: of bytes 100 + 100 would be -56; and scipy has no
     # sparse matrices of another byte order, as in files of other machines, or of half precision
     wide = complex if array.dtype.kind == "c" else float
-    matrix = sp.csr_array(array.astype(wide), copy=True)
+    matrix = sparse_rows(array.astype(wide))
     rows, columns = matrix.shape
     if rows != columns or not rows:
         raise ValueError(f"{name} is {rows} × {columns}: a square matrix is needed")

@@ -30,7 +30,7 @@ from scipy.sparse.linalg import splu
 
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.matrices import sum_of_products
-from squealpipe.structures.pencil import DENSE, Extended
+from squealpipe.structures.pencil import DENSE, Extended, sparse_rows
 
 
 @dataclass(frozen=True)
@@ -506,11 +506,16 @@ def _solver(
     """
     if structure.size > DENSE and structure.contacts:
         return _held(structure).solver(line, drag)
-    return splu(sp.csc_array(matrix)).solve  # type: ignore[no-any-return]
+    # the rows of Kᵀ are the columns of K
+    return splu(sparse_rows(matrix.T).T).solve  # type: ignore[no-any-return]
 
 
 _held_states: WeakKeyDictionary[ContactStructure, _Held] = WeakKeyDictionary()
 """Factors of large structures, kept as long as these live."""
+_wide_matrices: WeakKeyDictionary[ContactStructure, list[Extended]] = (
+    WeakKeyDictionary()
+)
+"""Matrices of the residuals in extended precision, which no friction changes, kept as long."""
 
 
 def _balance(
@@ -579,15 +584,15 @@ def _unbalanced(
     structure: ContactStructure, line: _Line, drag: np.ndarray
 ) -> Callable[[np.ndarray], np.ndarray]:
     """f + Σ (n + σ μ t) N − K q over closed contacts as a function of q, rounded once."""
-    stiffness, nearing = (
-        Extended(each) for each in (structure.stiffness, structure.normals.T)
-    )
+    wide = _wide_matrices.get(structure)
+    if wide is None:
+        given = (structure.stiffness, structure.normals, structure.tangentials)
+        wide = [Extended(each) for each in (*given, structure.normals.T)]
+        _wide_matrices[structure] = wide
+    stiffness, pressing, pulling, nearing = wide
     load, preloads, stiffnesses, drags = (
         each.astype(np.longdouble)
         for each in (structure.load, line.at_rest, line.stiffness, drag)
-    )
-    pressing, pulling = (
-        Extended(each) for each in (structure.normals, structure.tangentials)
     )
 
     def unbalanced(displacement: np.ndarray) -> np.ndarray:
