@@ -129,9 +129,8 @@ class _Forks:
 
     def _run(self, channel: Any, current: Any, left: list[int]) -> None:
         """Run tests in a fork."""
-        for (
-            other
-        ) in self.running:  # else nobody would notice that the first process died
+        # held open by another fork, a channel would not tell that the first process died
+        for other in self.running:
             other.close()
         session, plugins = self.session, self.session.config.pluginmanager
         capture: Any = plugins.getplugin("capturemanager")
@@ -145,16 +144,17 @@ class _Forks:
         before = compile_time()
         try:
             for number, following in pairwise(chain(self._numbers(left), [None])):
+                if self.stop.value or session.shouldfail or session.shouldstop:
+                    break
                 current.value = number
                 item = session.items[number]
                 item.ihook.pytest_runtest_protocol(
                     item=item,
                     nextitem=None if following is None else session.items[following],
                 )
-                if session.shouldfail or session.shouldstop:
-                    break
-        except KeyboardInterrupt:  # the first process tells it
-            session._setupstate.teardown_exact(None)
+        except KeyboardInterrupt:
+            pass  # the first process tells it
+        session._setupstate.teardown_exact(None)
         session.config.hook.pytest_unconfigure(config=session.config)
         channel.send(("end", compile_time() - before))
 
@@ -162,10 +162,7 @@ class _Forks:
         """Yield the numbers of tests that are left, and of those of files that are taken."""
         numbers = left
         while True:
-            for number in numbers:
-                if self.stop.value:
-                    return
-                yield number
+            yield from numbers
             with self.taken.get_lock():
                 place = self.taken.value
                 self.taken.value += 1
