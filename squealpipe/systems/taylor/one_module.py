@@ -19,7 +19,7 @@ import llvmlite.binding
 import numba
 from llvmlite import ir
 from llvmlite.binding import Linkage
-from numba.core import codegen, postproc
+from numba.core import codegen
 from numba.core.registry import cpu_target
 from numba.np import arrayobj
 
@@ -32,15 +32,6 @@ _Codegen: Any = codegen.JITCPUCodegen
 _target: Any = cpu_target
 _arrays: Any = arrayobj
 _llvm: Any = llvmlite.binding
-_PostProcessor: Any = postproc.PostProcessor
-_usual_lifetimes: Any = _PostProcessor.run
-
-
-def _lifetimes(processor: Any, emit_dels: bool = False, **options: Any) -> None:
-    """Note where variables end if counts of references need it; numba looks after each pass."""
-    processor.func_ir.generator_info = None
-    if emit_dels:
-        _usual_lifetimes(processor, emit_dels=True, **options)
 
 
 class _Part(_Library):  # type: ignore[misc]
@@ -166,13 +157,11 @@ def only_written() -> Iterator[None]:
     usual, usual_array = context.codegen(), _arrays.make_array
     context._internal_codegen = _parts()  # noqa: SLF001 (has no public setter)
     _arrays.make_array = partial(partial, _Array)
-    _PostProcessor.run = _lifetimes
     try:
         yield
     finally:
         context._internal_codegen = usual  # noqa: SLF001
         _arrays.make_array = usual_array
-        _PostProcessor.run = _usual_lifetimes
 
 
 def compile_entries(
