@@ -11,7 +11,7 @@ UV_INSTALL := $(BIN)/uv pip install -q --system-certs --python $(BIN)/python
 # uv takes a fifth of pip's CPU time but reads none of its settings: pip installs where it has an index of its own,
 # or where uv fails
 INSTALL = ! $(PIP) config list | grep -q '[.]index-url=' && $(UV_INSTALL) $(1) || $(PIP_INSTALL) $(1)
-TESTS := $(BIN)/python -m pytest -q -p tests.forks --forks 2
+TESTS := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 # Where the surroundings forbid byte code (many containers do), each of hundreds of processes would compile
 # again what it imports: a process of the tests for 10 s, a job in a new environment for 3 s.
@@ -35,8 +35,8 @@ test: dev  ## the tests of each change, minutes; and what they cost beside an ea
 	$(TESTS) -p tests.cost
 
 test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples; the study's cost
-	# a sixth of their time two forks wait for files and for Snakemake
-	$(TESTS) --forks 3 -m "release and not long" --timeout 3000
+	# a sixth of their time two workers wait for files and for Snakemake
+	$(TESTS) -n 3 -m "release and not long" --timeout 3000
 	$(MAKE) cost
 
 test-long: dev  ## samples that take minutes each, of which test-release has a part; outside .ci/run

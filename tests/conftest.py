@@ -200,20 +200,15 @@ def checkout(tmp_path):
 
 
 @pytest.fixture(scope="session")
-def shared_folder(request, tmp_path_factory):
-    """A temporary folder that all processes of the tests share."""
-    own = tmp_path_factory.getbasetemp()
-    return own.parent if request.config.getoption("forks", 0) else own
-
-
-@pytest.fixture(scope="session")
-def tiny_study(shared_folder, tmp_path_factory):
+def tiny_study(tmp_path_factory, worker_id):
     """The tiny study, run once for all test processes, each of which has a copy to itself.
 
     Where ``SQUEALPIPE_TINY`` names a folder, it is kept there for the tiers that follow.
     """
     own = tmp_path_factory.getbasetemp()
-    shared = Path(os.environ.get("SQUEALPIPE_TINY", shared_folder))
+    shared = Path(
+        os.environ.get("SQUEALPIPE_TINY", own if worker_id == "master" else own.parent)
+    )
     shared.mkdir(exist_ok=True)
     original, done = shared / "study/squealpipe", shared / "study/done"
     with FileLock(shared / "study.lock"):

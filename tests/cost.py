@@ -20,10 +20,10 @@ import numpy as np
 import pytest
 
 from squealpipe.study.durations import job_costs
-from squealpipe.systems.compiled import compile_time
-from tests.forks import COMPILING
 
 STORED = Path(__file__).with_name("costs.json")
+TIMES = "cpu_times"
+"""Key of what a process of the tests tells of its CPU time, without compiling, s."""
 
 
 def calibration() -> float:
@@ -89,13 +89,35 @@ def main(folder: str) -> int:
 
 def own_time() -> float:
     """CPU time of this process and of all that it has waited for, s, without compiling."""
-    return sum(os.times()[:4]) - compile_time()
+    times = os.times()
+    compiled = sys.modules.get("squealpipe.systems.compiled")
+    return sum(times[:4]) - (compiled.compile_time() if compiled else 0.0)
+
+
+class _Tier:
+    """CPU times of the processes of the tests that have ended, s."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+
+
+_tier = _Tier()
+
+
+def pytest_testnodedown(node: Any) -> None:
+    """Note the time of a process of the tests that has ended."""
+    # one that crashed, which fails the tests, has told nothing
+    _tier.times.append(getattr(node, "workeroutput", {}).get(TIMES, 0.0))
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_sessionfinish(session: Any) -> None:
-    """Judge the time of all processes."""
-    seconds = own_time() - session.config.stash.get(COMPILING, 0.0)
+    """Have the process tell its time, or add up those of all."""
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None:
+        output[TIMES] = own_time()
+        return
+    seconds = own_time() + sum(_tier.times)
     _, session.config.cost_line = verdict(
         "tests", seconds, calibration(), stored_costs()
     )

@@ -41,8 +41,7 @@ def test_what_tests_cost_is_told_whether_or_not_it_is_too_much(tmp_path):
         "cost.stored_costs = lambda: stored | {'limits': {'tests': 1e-6}}\n"
         "cost.calibration = lambda: 0.6\n"
     )
-    command = ["-q", "--forks", "1", "-p", "tests.forks", "-p", "limited"]
-    command += ["-p", "tests.cost"]
+    command = ["-q", "-n", "1", "-p", "limited", "-p", "tests.cost"]
     surroundings = os.environ | {
         "PYTHONPATH": os.pathsep.join([*sys.path, str(tmp_path)])
     }

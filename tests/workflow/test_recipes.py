@@ -271,7 +271,7 @@ GATES = (
     ("docs.build_dictionary",),
     ("ruff", "check", "."),
     ("ruff", "format", "--check", "."),
-    ("pytest", "-q", "-p", "no:cacheprovider", *BROKEN_ONCE),
+    ("pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *BROKEN_ONCE),
 )
 
 

@@ -127,12 +127,13 @@ def of_a4(params):
 
 
 @pytest.fixture(scope="session")
-def evidence(baseline, shared_folder):
+def evidence(baseline, tmp_path_factory, worker_id):
     """What the paper shows as printed, and the corrected physics beside it.
 
     It takes 4 s, and is computed once for all test processes.
     """
-    kept = shared_folder / "evidence.pickle"
+    folder = tmp_path_factory.getbasetemp()
+    kept = (folder if worker_id == "master" else folder.parent) / "evidence.pickle"
     with FileLock(f"{kept}.lock"):
         if not kept.exists():
             found = compute_evidence(baseline, "as_printed", beside=True)
