@@ -162,7 +162,7 @@ rows.add(
     section="all",
 )
 def parameters_are_printed(run: Evidence) -> Finding:
-    """Number of the four dimensionless groups that the paper prints."""
+    """How many of the four dimensionless groups the paper prints."""
     evidence = (
         "Read by hand in the paper, not computed: of "
         f"{', '.join(GROUPS)} it prints {', '.join(READ_IN_THE_PAPER) or 'none'}."
