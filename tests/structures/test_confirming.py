@@ -80,7 +80,9 @@ def test_critical_frictions_are_those_of_the_whole_followed(changes, expected):
     assert ours == pytest.approx(theirs, abs=1e-10)
 
 
-@pytest.mark.parametrize("damping", [0.0, 0.002])
+@pytest.mark.parametrize(
+    "damping", [pytest.param(0.0, marks=pytest.mark.release), 0.002]
+)
 def test_the_whole_has_the_last_word(damping):
     pad = elastic_pad(elements=(12, 3), mu=0.7, modal_damping=damping)
     solver = Solver(pad, Limits(), pad.belt_speed)

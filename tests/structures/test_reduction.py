@@ -605,7 +605,7 @@ def test_of_many_contacts_those_that_are_open_most_are_named():
     assert _of_contacts(one.isel(contact=[0, 10])) == "lining_1 0 %, lining_11 6 %"
 
 
-@pytest.mark.parametrize("n_modes", [5, 7])
+@pytest.mark.parametrize("n_modes", [5, pytest.param(7, marks=pytest.mark.release)])
 def test_damping_that_stops_growth_is_that_of_the_whole_where_the_reduced_one_misses_it(
     n_modes,
 ):

@@ -435,7 +435,7 @@ def with_an_unlimited_mode(size):
     )
 
 
-@pytest.mark.parametrize("size", [8, 12])
+@pytest.mark.parametrize("size", [8, pytest.param(12, marks=pytest.mark.release)])
 def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_work(size):
     """It ended in "array must not contain infs or NaNs", an overflow, or a longer t_end."""
     structure = with_an_unlimited_mode(size)

@@ -277,7 +277,10 @@ def frozen_eigenvalues():
     return json.loads(EIGENVALUES.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(
+    "seed",
+    [*range(5), *(pytest.param(n, marks=pytest.mark.release) for n in range(5, 10))],
+)
 def test_random_structures_have_the_eigenvalues_of_30_digits(seed):
     structure = sliding_structure(seed)
     modes = structure.complex_modes()

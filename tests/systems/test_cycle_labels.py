@@ -70,7 +70,10 @@ def _growth(force, first, last, steps):
     return growth / (last - first)
 
 
-@pytest.mark.parametrize("force", [0.28, 0.3215, 0.55])
+@pytest.mark.parametrize(
+    "force",
+    [0.28, *(pytest.param(each, marks=pytest.mark.release) for each in (0.3215, 0.55))],
+)
 def test_chaos_settles_on_no_cycle(force):
     cycle = duffing_holmes.limit_cycle(force=force)
     assert outcome(cycle) == "unsettled"

@@ -152,7 +152,9 @@ def ring():
     )
 
 
-@pytest.mark.parametrize("depth", [0.1, 0.02, 0.005])
+@pytest.mark.parametrize(
+    "depth", [0.005, *(pytest.param(d, marks=pytest.mark.release) for d in (0.02, 0.1))]
+)
 def test_two_folds_within_one_step_are_not_passed(ring, depth):
     """Between them multipliers and tangents change by less than anything else is watched for."""
     at = {"level": 0.02, "depth": depth}

@@ -44,7 +44,7 @@ LONG = {
     "backbone": lambda: backbone(
         Parameters(), 0.9, 2.8, mode=1, method="hbm", n_harmonics=4
     ),
-    "cycle": lambda: limit_cycle(STICK_SLIP, *AT, t_settle=4e4),
+    "cycle": lambda: limit_cycle(STICK_SLIP, *AT, t_settle=1e4),
     "branch": lambda: cycle_branch(
         STICK_SLIP, *AT, parameter="belt_speed", to=0.6, n_points=12
     ),

@@ -7,7 +7,8 @@ from squealpipe.schema import Outcome
 from tests.oracles.definition import Definition
 from tests.systems.published_cycles import ANY, CASES, impact_oscillator
 
-TENTH = np.random.default_rng(42).permutation(len(CASES))[:6]
+FIRST = (7, 17, 28)
+"""Chaos, a forced cycle of three periods, and one without forcing."""
 LONG = (47,)
 """Sixteen periods with impacts: an error of 1e-10 has grown to the motion's size."""
 
@@ -15,7 +16,7 @@ LONG = (47,)
 @pytest.mark.parametrize(
     "number",
     [
-        pytest.param(n, marks=[] if n in TENTH else pytest.mark.release)
+        pytest.param(n, marks=[] if n in FIRST else pytest.mark.release)
         for n in range(len(CASES))
         if n not in LONG
     ],

@@ -42,8 +42,24 @@ def test_a_sweep_of_a_system_is_its_ensemble_whole_or_in_parts(task, run):
         xr.testing.assert_equal(join(parts, "omega"), whole)
 
 
-@pytest.mark.parametrize(("run", "along"), [("ensemble", "omega"), ("basin", "x0")])
-@pytest.mark.parametrize("blocks", [0, 1, 2, 99])
+@pytest.mark.parametrize(
+    ("run", "along", "blocks"),
+    [
+        ("ensemble", "omega", 1),
+        ("ensemble", "omega", 99),
+        ("basin", "x0", 0),
+        ("basin", "x0", 2),
+        *(
+            pytest.param(*each, marks=pytest.mark.release)
+            for each in (
+                ("ensemble", "omega", 0),
+                ("ensemble", "omega", 2),
+                ("basin", "x0", 1),
+                ("basin", "x0", 99),
+            )
+        ),
+    ],
+)
 def test_a_sweep_of_a_system_that_was_stopped_goes_on_where_it_was(
     task, run, along, blocks, tmp_path, monkeypatch
 ):

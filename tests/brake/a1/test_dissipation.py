@@ -100,7 +100,13 @@ def test_mixed_runs_equal_those_alone():
             np.testing.assert_array_equal(whole._raw[name][row], values, err_msg=name)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    "law",
+    [
+        pytest.param(law, marks=[pytest.mark.release] * (law != "exponential"))
+        for law in LAWS
+    ],
+)
 def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law):
     """The variational equations, velocity derivatives and saltations included.
 

@@ -104,7 +104,10 @@ CONTACT = "linear 0:0 0.5:0.1 1:0.65 2:3"
         {"friction_law": "linear 0:0.55 0.4:0.35 1:0.2"},
         {"friction_law": OWN, "mu": np.array([0.3, 0.5, 0.8])},
         {"contact_law": "dashpot", "damping3": np.array([0.1, 0.0, 0.4])},
-        {"contact_law": CONTACT, "mu": np.array([0.3, 0.5, 0.8])},
+        pytest.param(
+            {"contact_law": CONTACT, "mu": np.array([0.3, 0.5, 0.8])},
+            marks=pytest.mark.release,
+        ),
         {
             "contact_law": "dashpot",
             "damping3": 0.2,

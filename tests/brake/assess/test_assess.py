@@ -387,7 +387,9 @@ SLOWLY = Parameters(
 """Its second mode, at 1.25 kHz, grows by 0.4 % in a period beneath stick–slip at 940 Hz."""
 
 
-@pytest.mark.parametrize("start", ["pushed", "sudden"])
+@pytest.mark.parametrize(
+    "start", ["pushed", pytest.param("sudden", marks=pytest.mark.release)]
+)
 def test_a_mode_that_grows_slowly_beneath_a_loud_one_has_its_time(start):
     """Against own Runge–Kutta runs of two steps, from 7 to 8 s after the push.
 

@@ -231,7 +231,7 @@ def test_as_a_system_a_pad_has_the_same_cycle_and_branch_in_any_units():
     np.testing.assert_allclose(other.x_start, one.x_start * length, rtol=1e-7)
 
 
-@pytest.mark.parametrize("speed", UNSTABLE)
+@pytest.mark.parametrize("speed", [1.25, pytest.param(1.55, marks=pytest.mark.release)])
 def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
     params = oscillator(1e3, speed, **BSTAB)
     guess = (equilibrium(speed) + UNSTABLE[speed][0], 0.25, 0.0, 0.0)
@@ -324,7 +324,9 @@ def test_branch_refuses_what_it_cannot_do(change, named):
         cycle_branch(FORMER, 1.0, 2.0, **given)
 
 
-@pytest.mark.parametrize("rounds", [2, 3, 6, 25])
+@pytest.mark.parametrize(
+    "rounds", [6, 25, *(pytest.param(n, marks=pytest.mark.release) for n in (2, 3))]
+)
 def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     params, angles = oscillator(1e4, 1.25, **BSTAB), ANGLES
     once, _ = cycle_from(Design(params, *angles), (1.5, 0.25, 1.25, 0.0))

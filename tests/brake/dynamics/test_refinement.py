@@ -31,7 +31,7 @@ OTHERS = {
 @pytest.mark.parametrize(
     "params",
     [
-        pytest.param(params, marks=[pytest.mark.release] * name.endswith("springs"))
+        pytest.param(params, marks=[pytest.mark.release] * ("belt" not in name))
         for name, params in OTHERS.items()
     ],
     ids=OTHERS,

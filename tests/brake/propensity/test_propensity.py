@@ -59,7 +59,7 @@ def coefficient(speed, p):
 @pytest.mark.parametrize(
     "change",
     [
-        {"damping1": 0.05, "damping2": 0.3},
+        pytest.param({"damping1": 0.05, "damping2": 0.3}, marks=pytest.mark.release),
         {"friction_law": "exponential", "mu_static": 0.7, "belt_speed": 1.0},
         {"friction_law": LAW, "belt_speed": -0.5, "damping1": 0.1},
         {"contact_law": "dashpot", "damping3": 0.2},

@@ -294,7 +294,7 @@ def test_a_sweep_in_parts_or_after_an_interruption_is_the_map_of_python(tmp_path
         "mass: mass.npz\nstiffness: stiffness.npz\ndamping: damping.npz\n"
         "contacts: contacts.csv\nload: 0\n"
     )
-    axes = {"pressure": [1.0, 2.0], "speed": [2.0, 4.0], "mu": [0.05, 0.3, 0.6]}
+    axes = {"pressure": [1.0, 2.0], "speed": [2.0, 4.0], "mu": [0.05, 0.1, 0.6]}
     config = {
         "task": f"{tmp_path / 'pad.yaml'}:operating_map",
         "vary": {"mu": axes["mu"], "speed": axes["speed"]},

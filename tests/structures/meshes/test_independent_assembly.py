@@ -58,8 +58,8 @@ def agree(structure, known, mass, stiffness, atol=1e-7):
 @pytest.mark.parametrize(
     ("shape", "axis", "through"),
     [
-        ({}, (0, 0, 1), (0, 0, 0)),
-        ({"shift": 0.11}, (0, 0, -1), (0, 0, 0)),
+        ({}, (0, 0, -1), (0, 0, 0)),
+        pytest.param({"shift": 0.11}, (0, 0, -1), (0, 0, 0), marks=pytest.mark.release),
         ({"cone": 0.3}, (0, 0, 1), (0, 0, 0)),
         ({"cone": -0.2, "shift": 0.2}, (0.05, 0.02, 1), (0.01, 0, 0.02)),
     ],
