@@ -435,7 +435,9 @@ def with_an_unlimited_mode(size):
     )
 
 
-@pytest.mark.parametrize("size", [8, pytest.param(12, marks=pytest.mark.release)])
+@pytest.mark.parametrize(
+    "size", [6, *(pytest.param(n, marks=pytest.mark.release) for n in (8, 12))]
+)
 def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_work(size):
     """It ended in "array must not contain infs or NaNs", an overflow, or a longer t_end."""
     structure = with_an_unlimited_mode(size)

@@ -272,7 +272,11 @@ def test_a_curve_of_folds_goes_on_with_another_order_of_events():
     ]
 
 
-def test_round_off_of_a_start_does_not_decide_whether_a_grazing_curve_goes_on():
+@pytest.mark.parametrize(
+    "moves",
+    [(0.0, 1e-12, 1e-9), pytest.param((0.0, 1e-11, 1e-10), marks=pytest.mark.release)],
+)
+def test_round_off_of_a_start_does_not_decide_whether_a_grazing_curve_goes_on(moves):
     """At a touch a run may have the pair of events or not; on AVX2 it had it, and that was all."""
     params, *angles = FLUTTER[0], FLUTTER[1] * math.pi, FLUTTER[2] * math.pi
     branch = cycle_branch(params, *angles, parameter="mu", to=0.7, start="onset")
@@ -287,7 +291,7 @@ def test_round_off_of_a_start_does_not_decide_whether_a_grazing_curve_goes_on():
             start=at.assign(mu=at.mu * (1.0 + moved)),
             to={"alpha1": (0.955, 0.9603)},
         )
-        for moved in (0.0, 1e-12, 1e-11, 1e-10, 1e-9)
+        for moved in moves
     ]
     for curve in curves:
         assert list(curve.outcome.values) == [Outcome.converged] * 2
