@@ -6,21 +6,26 @@ value in steps that halve, and followed beyond it in steps that grow while they 
 
 Invariant: a value counts as quiet from any start if none of the starts that were tried there lasts:
 motions that were followed, the sudden start, and strikes or random starts. Cost: a handful of runs
-for each value.
+for each value. Each side of a parameter is searched by a generator, which yields starts and is sent
+what they settle to, so that the runs of all sides are made together.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import takewhile
-from typing import Any, Protocol, Self
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
+from squealpipe.systems.progress import report
 from squealpipe.vibration.boundaries import Cure, thinned
 from squealpipe.vibration.settled_runs import SettledRun, Start
+from squealpipe.vibration.settling import difference, settling_of_verdicts
 
 
 @dataclass(frozen=True)
@@ -64,8 +69,12 @@ class Subjects(Protocol):
         """Run starts until they have settled."""
 
 
-Test = Callable[[Sequence["Side"], Sequence[float]], list[bool]]
-"""Test that tells whether the subjects of some sides at some values are quiet."""
+_Found = TypeVar("_Found")
+_Search = Generator[list[Start], list[SettledRun], _Found]
+"""Search that yields starts, is sent the runs of them, and returns what it has found."""
+
+MOTIONS, OWN_STARTS = (0,), (1, 2)
+"""Kinds of starts: the motions that are followed; the sudden start, and strikes or random ones."""
 
 
 @dataclass
@@ -75,30 +84,33 @@ class Side:
     Attributes:
         values: outward.
         inner: the last value known to be like the present one, in what is tested.
-        exact: the linear boundary, if the answer may be that.
-        trial_values: those to run, outward.
+        outer: the nearest one known not to be; NaN: none.
         answer: what was found; NaN: nothing.
         motions: states of motions that last at the value tried last at which any does.
+        all_die_out: values at which the sudden start and all others die out.
     """
 
     name: str
     cure: Cure
     values: np.ndarray
     inner: float
-    exact: float = math.nan
-    trial_values: list[float] = field(default_factory=list)
-    answer: float = math.nan
     outer: float = math.nan
+    answer: float = math.nan
     motions: list[np.ndarray] = field(default_factory=list)
+    all_die_out: set[float] = field(default_factory=set)
 
-    def scale(self, located: float, value: float) -> float:
+    def scale(self, value: float) -> float:
         """Distance next to a value that counts as located."""
-        return self.cure.scale(located, value)
+        return self.cure.scale(Following.located, value)
 
-    def beyond(self, value: float, located: float) -> float:
+    def distance(self, value: float) -> float:
+        """Distance from the present value."""
+        return abs(value - self.cure.value)
+
+    def beyond(self, value: float) -> float:
         """The next value outward that counts as another, within the range."""
         farthest = float(self.values[-1])
-        step = math.copysign(self.scale(located, value), farthest - self.cure.value)
+        step = math.copysign(self.scale(value), farthest - self.cure.value)
         return min((value + step, farthest), key=lambda end: abs(end - value))
 
 
@@ -127,282 +139,242 @@ def nearer(cures: Mapping[str, Cure], sides: Sequence[Side]) -> dict[str, float]
 
 def any_start(
     cures: Mapping[str, Cure],
-    every: Sequence[Side],
+    sides: Sequence[Side],
     nearest: Mapping[str, float],
+    subjects: Subjects,
+    *,
     quiet: bool,
     always: bool,
-    subjects: Subjects,
-    test: Test,
-    follow: Test | None,
+    closely: bool = True,
 ) -> dict[str, float]:
     """Return where the verdict from any start changes: at ``quiet_from``, beyond or before it.
 
     Args:
-        every: sides of the cures, with the motions that last now.
+        sides: of the cures, with the motions that last now.
         nearest: ``quiet_from`` of each cure.
         quiet: whether a push dies out now.
         always: whether any start does.
-        test: whether all starts die out.
-        follow: whether the motions that are followed do; None: the answer is the nearest value
-            tried, and no motion is followed to it.
+        closely: whether motions are followed; otherwise the answer is the nearest value tried.
     """
-    sides = []
-    for side in every:
+    reach = {
+        side.name: side.distance(nearest.get(side.name, math.nan))
+        for side in sides
+        if always
+    }
+    searches = []
+    for side in sides:
         answer = nearest.get(side.name, math.nan)
         ahead = (answer - side.cure.value) * (side.values[0] - side.cure.value) > 0
-        if not quiet:
-            if not ahead:
-                continue
-            side.inner = answer
+        exact = answer if ahead else math.nan
+        if quiet:
+            way = _of_quiet(side, exact, reach, subjects, always, closely)
         elif ahead:
-            inside = np.abs(side.values - side.cure.value) < abs(
-                answer - side.cure.value
-            )
-            # a boundary nearer than the first value needs one on the way to it, too
-            half_way = np.array([0.5 * (side.cure.value + answer)])
-            side.values = side.values[inside] if inside.any() else half_way
-        side.exact = answer if ahead else math.nan
-        if side.values.size:
-            sides.append(side)
-    for side in sides:
-        beyond = np.abs(side.values - side.cure.value) > abs(
-            side.inner - side.cure.value
-        )
-        outer = side.values[beyond]
-        side.trial_values = thinned(outer)
-        if not quiet:
-            side.trial_values = [
-                side.beyond(side.inner, Following.located),
-                *side.trial_values[1:],
-            ]
-        elif math.isnan(side.exact):
-            side.trial_values = _shown(side, subjects)
-    climbed = _climb(sides, quiet=quiet, always=always, test=test, follow=follow)
-    return nearer(cures, climbed)
+            way = _of_noisy(side, exact, subjects, closely)
+        else:
+            continue
+        searches.append(way)
+    side_by_side(searches, subjects.settle)
+    return nearer(cures, sides)
 
 
-def _shown(side: Side, subjects: Subjects) -> list[float]:
+def side_by_side(
+    searches: Sequence[_Search[None]],
+    settle: Callable[[Sequence[Start]], Sequence[SettledRun]],
+) -> None:
+    """Run generators to their ends; what they ask for at a time is settled together."""
+    answers: dict[int, Any] = dict.fromkeys(range(len(searches)))
+    while answers:
+        asked: dict[int, list[Start]] = {}
+        for number, runs in answers.items():
+            with suppress(StopIteration):
+                asked[number] = searches[number].send(runs)
+        ended = 1.0 - len(asked) / len(searches)
+        report(partial(float, ended))
+        starts = [start for those in asked.values() for start in those]
+        settled = iter(settle(starts) if starts else [])
+        answers = {
+            number: [next(settled) for _ in those] for number, those in asked.items()
+        }
+
+
+def _of_quiet(
+    side: Side,
+    exact: float,
+    reach: dict[str, float],
+    subjects: Subjects,
+    always: bool,
+    closely: bool,
+) -> _Search[None]:
+    """Search a side of a subject that is quiet after a push.
+
+    Args:
+        exact: where pushes cease to die out on this side, NaN: nowhere.
+        reach: for each cure how far the answer is at most, if any start dies out now; what is
+            farther on either side is not looked at.
+    """
+    now = side.cure.value
+    if not math.isnan(exact):
+        inside = side.values[np.abs(side.values - now) < side.distance(exact)]
+        # a boundary nearer than the first value needs one on the way to it, too
+        side.values = inside if inside.size else np.array([0.5 * (now + exact)])
+    trials = thinned(side.values)
+    if math.isnan(exact):
+        trials = _shown(side, trials, subjects)
+    if always:
+        side.answer = exact  # quiet from any start as far as it is quiet
+    for trial in trials:
+        if side.distance(side.inner) >= reach.get(side.name, math.inf):
+            return
+        if (yield from dies_out(side, trial, subjects)) != always:
+            side.outer = trial
+            break
+        side.inner = trial
+    yield from _located(side, reach, subjects, always, closely)
+
+
+def _of_noisy(
+    side: Side, exact: float, subjects: Subjects, closely: bool
+) -> _Search[None]:
+    """Search the side of a noisy subject on which pushes die out from ``exact`` on."""
+    if closely:
+        yield from lead(side, exact, subjects)
+    side.inner = exact
+    outer = side.values[np.abs(side.values - side.cure.value) > side.distance(exact)]
+    trials = thinned(outer)
+    trials = [side.beyond(exact), *trials[1:]]
+    for trial in trials:
+        if (yield from dies_out(side, trial, subjects)):
+            if side.inner == exact:
+                side.answer = exact
+                return
+            side.outer = trial
+            break
+        side.inner = trial
+    yield from _located(side, {}, subjects, False, closely)
+
+
+def _shown(side: Side, trials: list[float], subjects: Subjects) -> list[float]:
     """Values up to the first at which strikes decay too slowly to be told from what lasts."""
 
     def is_slow(value: float) -> bool:
         return subjects.fading(side.cure.apply(value)) > -Following.fades
 
     if is_slow(side.cure.value):
-        return side.trial_values
-    return list(takewhile(lambda value: not is_slow(value), side.trial_values))
+        return trials
+    return list(takewhile(lambda value: not is_slow(value), trials))
 
 
-def _climb(
-    sides: list[Side], *, quiet: bool, always: bool, test: Test, follow: Test | None
-) -> list[Side]:
-    """Test the trial values of each side outward, and bisect where the answer changes."""
-    waiting = [side for side in sides if side.trial_values]
-    while waiting:
-        answers = test(waiting, [side.trial_values[0] for side in waiting])
-        for side, dies in zip(waiting, answers, strict=True):
-            trial = side.trial_values.pop(0)
-            if dies == always:
-                side.inner = trial
-            elif not quiet and side.inner == side.exact:
-                side.answer, side.trial_values = side.exact, []
-            else:
-                side.outer, side.trial_values = trial, []
-        waiting = [side for side in waiting if side.trial_values]
-    open_sides = [side for side in sides if math.isnan(side.answer)]
-    located = math.inf if follow is None else Following.located
-    bisect(open_sides, always, test, located)
-    brackets = [side for side in open_sides if not math.isnan(side.outer)]
-    if follow is not None:
-        _follow(brackets, always, follow, test)
-    if always:
-        for side in sides:
-            if math.isnan(side.answer):
-                side.answer = side.exact  # quiet from any start as far as it is quiet
-    return sides
+def _located(
+    side: Side, reach: dict[str, float], subjects: Subjects, always: bool, closely: bool
+) -> _Search[None]:
+    """Bisect the bracket of a side, if it has one, and follow the motion at its lasting end."""
+    if math.isnan(side.outer):
+        return
+    while closely and abs(side.outer - side.inner) > side.scale(
+        min(side.inner, side.outer, key=abs)
+    ):
+        if always:  # a motion is followed towards the present value
+            best = reach.get(side.name, math.nan)
+            if side.distance(side.inner) >= best:
+                return
+            reach[side.name] = min(side.distance(side.outer), best)
+        middle = 0.5 * (side.inner + side.outer)
+        if (yield from dies_out(side, middle, subjects)) == always:
+            side.inner = middle
+        else:
+            side.outer = middle
+    side.answer = side.inner if always else side.outer
+    if closely:
+        yield from _follow(side, subjects, always)
 
 
-def _follow(sides: Sequence[Side], always: bool, follow: Test, test: Test) -> None:
-    """Follow the motion at the lasting end of each bracket to where it ends.
+def _follow(side: Side, subjects: Subjects, always: bool) -> _Search[None]:
+    """Follow the motion at the lasting end of the bracket to where it ends.
 
     Another value may have been tried from a motion at a distant one, which is no start of what
     lasts there. Steps grow while the motion lasts; before one in which it dies out counts, it is
     tried in smaller ones. Where it ends no other start may last either, or that is followed.
     """
-    open_ones = [_Step.of(side, always) for side in sides]
-    while open_ones:
-        at = [step.next for step in open_ones]
-        dies = follow([step.side for step in open_ones], at)
-        last_steps = [
-            step
-            for step, gone in zip(open_ones, dies, strict=True)
-            if gone and step.is_small
-        ]
-        dies_always = test(
-            [step.side for step in last_steps], [step.next for step in last_steps]
-        )
-        left = [
-            step for step, gone in zip(last_steps, dies_always, strict=True) if not gone
-        ]
-        open_ones = [
-            step
-            for step, gone in zip(open_ones, dies, strict=True)
-            if (step.lasts() if not gone or step in left else step.ended())
-        ]
+    lasting, other = (side.outer, side.inner) if always else (side.inner, side.outer)
+    size = other - lasting
+    end = side.cure.value if always else float(side.values[-1])
+    while True:
+        ahead = min(lasting + size, end, key=lambda value: abs(value - lasting))
+        least = side.scale(min(lasting, ahead, key=abs))
+        is_small = abs(size) <= least * (1.0 + 1e-9)
+        gone = yield from dies_out(side, ahead, subjects, MOTIONS)
+        if gone and is_small:
+            gone = yield from dies_out(side, ahead, subjects, OWN_STARTS)
+        if not gone:
+            side.answer = end if always else math.nan
+            lasting, size = ahead, 2.0 * size
+            if lasting == end:
+                return
+            continue
+        side.answer = ahead
+        if is_small:
+            return
+        size = math.copysign(max(0.25 * abs(size), least), size)
 
 
-@dataclass(eq=False)
-class _Step:
-    """One step from a value at which a motion lasts towards one at which it may not.
-
-    Attributes:
-        lasting: the value at which it lasts.
-        size: of the step, with its sign.
-        end: the last value of the range.
-    """
-
-    side: Side
-    always: bool
-    lasting: float
-    size: float
-    end: float
-
-    @classmethod
-    def of(cls, side: Side, always: bool) -> Self:
-        if always:
-            size = side.inner - side.outer
-            return cls(side, always, side.outer, size, side.cure.value)
-        size = side.outer - side.inner
-        return cls(side, always, side.inner, size, float(side.values[-1]))
-
-    @property
-    def next(self) -> float:
-        """Return where the step leads, within the range."""
-        reach = (self.lasting + self.size, self.end)
-        return min(reach, key=lambda value: abs(value - self.lasting))
-
-    @property
-    def is_small(self) -> bool:
-        """True if the step is as small as a boundary is located."""
-        near = min(self.lasting, self.next, key=abs)
-        return abs(self.size) <= self.side.scale(Following.located, near) * (1.0 + 1e-9)
-
-    def lasts(self) -> bool:
-        """Take the step; whether the range goes on."""
-        self.lasting, self.size = self.next, 2.0 * self.size
-        self.side.answer = self.end if self.always else math.nan
-        return self.lasting != self.end
-
-    def ended(self) -> bool:
-        """Note where the motion dies out; whether a smaller step is to be tried."""
-        self.side.answer = self.next
-        if self.is_small:
-            return False
-        least = self.side.scale(
-            Following.located, min(self.lasting, self.next, key=abs)
-        )
-        self.size = math.copysign(max(0.25 * abs(self.size), least), self.size)
-        return True
-
-
-def lead(
-    sides: Sequence[Side], nearest: Mapping[str, float], subjects: Subjects
-) -> None:
-    """Lead the motions of each side that has a ``quiet_from`` to the values next to it.
+def lead(side: Side, quiet_from: float, subjects: Subjects) -> _Search[None]:
+    """Lead the motions of a side to the values next to where pushes die out.
 
     From the present value to one beyond ``quiet_from`` they could leave their basin, although they
     last there. What is left of the way is halved until the boundary of any start is not located
     any finer.
     """
-    ways = {}
-    for row, side in enumerate(sides):
-        way = nearest.get(side.name, math.nan) - side.cure.value
-        if side.motions and way * (side.values[0] - side.cure.value) > 0:
-            ways[row] = way
-    left = 1.0 - Following.along
-    while ways:
-        owners: list[int] = []
-        starts: list[Start] = []
-        for row, way in ways.items():
-            cure = sides[row].cure
-            subject = cure.apply(cure.value + (1.0 - left) * way)
-            # none where it has no steady sliding
-            made = [
-                replace(start, is_led=True)
-                for start in subjects.starts(subject, 0, sides[row].motions)
-            ]
-            starts += made
-            owners += [row] * len(made)
-        runs = list(zip(owners, subjects.settle(starts), strict=True))
-        for row in list(ways):
-            lasting = [
-                run.last.final for owner, run in runs if owner == row and run.lasts
-            ]
-            quiet_from = nearest[sides[row].name]
-            near = sides[row].scale(Following.located, quiet_from)
-            sides[row].motions = lasting or sides[row].motions
-            if not lasting or abs(left * ways[row]) <= near:
-                del ways[row]
+    way, left = quiet_from - side.cure.value, 1.0 - Following.along
+    while side.motions:
+        subject = side.cure.apply(side.cure.value + (1.0 - left) * way)
+        # none where it has no steady sliding
+        runs = yield [
+            replace(start, is_led=True)
+            for start in subjects.starts(subject, 0, side.motions)
+        ]
+        lasting = [run.last.final for run in runs if run.lasts]
+        side.motions = lasting or side.motions
+        if not lasting or abs(left * way) <= side.scale(quiet_from):
+            return
         left *= 0.5
 
 
-def dies_out_always(
-    sides: Sequence[Side],
-    values: Sequence[float],
-    *,
+def different_motions(runs: Sequence[SettledRun]) -> list[np.ndarray]:
+    """Return the last states of the first runs that are not known to show the same motion."""
+    kept: list[SettledRun] = []
+    for run in runs:
+        if len(kept) < Following.most_motions and not any(
+            run.agrees
+            and run.verdict is other.verdict
+            and difference(run.last.levels(1.0), other.last.levels(1.0))
+            <= settling_of_verdicts.agreement
+            for other in kept
+        ):
+            kept.append(run)
+    return [run.last.final for run in kept]
+
+
+def dies_out(
+    side: Side,
+    value: float,
     subjects: Subjects,
-    kinds: int = 3,
-) -> list[bool]:
-    """Tell whether each side's subject is quiet from all starts, tried one kind after the other.
+    kinds: Iterable[int] = (*MOTIONS, *OWN_STARTS),
+) -> _Search[bool]:
+    """Find whether a side's subject is quiet from all starts, one kind of them after the other.
 
     First the motions that last at its last value are followed, which finds where they end.
-
-    Args:
-        kinds: how many of the three kinds of starts are tried.
     """
-    answers = [False] * len(sides)
-    open_rows: dict[int, Any] = {}
-    for row, (side, value) in enumerate(zip(sides, values, strict=True)):
-        subject = side.cure.apply(value)
-        if subjects.is_quiet_linearly(subject):
-            answers[row], open_rows[row] = True, subject
-    for number in range(kinds):
-        owners: list[int] = []
-        starts: list[Start] = []
-        for row, subject in open_rows.items():
-            made = subjects.starts(subject, number, sides[row].motions)
-            starts += made
-            owners += [row] * len(made)
-        lasting: dict[int, list[np.ndarray]] = {}
-        runs = subjects.settle(starts) if starts else []
-        for row, settled in zip(owners, runs, strict=True):
-            if settled.lasts:
-                lasting.setdefault(row, []).append(settled.last.final)
-        for row, states in lasting.items():
-            answers[row] = False
-            sides[row].motions = states[: Following.most_motions]
-            del open_rows[row]
-    return answers
-
-
-def bisect(sides: Sequence[Side], quiet: bool, test: Test, located: float) -> None:
-    """Answers of the sides that have a bracket, side by side."""
-    while True:
-        wide = [
-            side
-            for side in sides
-            if not math.isnan(side.outer)
-            and abs(side.outer - side.inner)
-            > side.scale(located, min(side.inner, side.outer, key=abs))
-        ]
-        if not wide:
-            break
-        middles = [0.5 * (side.inner + side.outer) for side in wide]
-        answers = test(wide, middles)
-        for side, at, dies in zip(wide, middles, answers, strict=True):
-            if dies == quiet:
-                side.inner = at
-            else:
-                side.outer = at
-    for side in sides:
-        if not math.isnan(side.outer):
-            side.answer = side.inner if quiet else side.outer
+    subject = side.cure.apply(value)
+    if not subjects.is_quiet_linearly(subject):
+        return False
+    for kind in kinds:
+        if kind in OWN_STARTS and value in side.all_die_out:
+            continue
+        runs = yield subjects.starts(subject, kind, side.motions)
+        lasting = different_motions([run for run in runs if run.lasts])
+        if lasting:
+            side.motions = lasting
+            return False
+        if kind == OWN_STARTS[-1]:
+            side.all_die_out.add(value)
+    return True

@@ -16,13 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.vibration.any_start import (
-    Subjects,
-    any_start,
-    dies_out_always,
-    lead,
-    sides_of,
-)
+from squealpipe.vibration.any_start import Subjects, any_start, sides_of
 from squealpipe.vibration.boundaries import (
     Cure,
     QuietInterval,
@@ -120,17 +114,8 @@ def of_any_start(
     sides = sides_of(cures)
     for side in sides:
         side.motions = list(motions)
-    if closely and not quiet:
-        lead(sides, nearest, subjects)
     anywhere = any_start(
-        cures,
-        sides,
-        nearest,
-        quiet,
-        always,
-        subjects,
-        partial(dies_out_always, subjects=subjects),
-        partial(dies_out_always, subjects=subjects, kinds=1) if closely else None,
+        cures, sides, nearest, subjects, quiet=quiet, always=always, closely=closely
     )
     return {
         name: boundary._replace(

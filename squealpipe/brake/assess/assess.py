@@ -33,6 +33,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.systems.one_thread import one_thread
 from squealpipe.validation import Angle, Tolerance
 from squealpipe.vibration import judgement
+from squealpipe.vibration.any_start import different_motions
 from squealpipe.vibration.boundaries import Search
 from squealpipe.vibration.cures import Boundary, cure_table
 from squealpipe.vibration.schema import Mechanism, assess_schema
@@ -53,7 +54,7 @@ class Judged:
 
     Attributes:
         verdict: what pushed steady sliding ends in, or the sudden start where there is none.
-        motions: final states (4,) of the first two runs that have not died out, m and m/s.
+        motions: final states (4,) of two different motions that have not died out, m and m/s.
         facts: variables of the dataset that are known before the search.
         tol: tolerance of the runs.
     """
@@ -126,7 +127,7 @@ def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Ju
         "alpha2": alpha2,
         "preload": params.preload,
     }
-    motions = [run.last.final for run in judged.lasting[:2]]
+    motions = different_motions(judged.lasting)
     return Judged(design, judged.verdict, motions, facts, tol)
 
 
