@@ -477,6 +477,25 @@ def test_statements_that_changed_are_told_with_verdict_and_value(tmp_path):
     assert found[1].values == (1.0, 1.1)
 
 
+def test_a_statement_in_other_words_is_no_other_result():
+    """One edited docstring of a check made a study differ from its archive."""
+    root = Path(__file__).parents[2]
+    stored = load(root / "results/archive/reference/data/claims.nc")
+    for name, verdict in (
+        ("check", Agreement.within_tolerance),
+        ("statement", Agreement.within_tolerance),
+        ("relation", Agreement.different),
+        ("section", Agreement.different),
+    ):
+        other = stored.copy(deep=True)
+        other[name] = other[name].astype(object)
+        other[name][0] = "other words"
+        found = compare_datasets("claims", stored, other)
+        assert found.verdict is verdict, name
+        (entry,) = [each for each in found.variables if each.differing]
+        assert (entry.name, entry.verdict) == (name, verdict)
+
+
 def test_a_backbone_traced_in_other_steps_is_the_same_curve():
     """Its points lie where steps ended: without three of them it is still the same curve."""
     whole = backbone(Parameters(), 0.9, 2.8, mode=1, y_peak_max=3.0)

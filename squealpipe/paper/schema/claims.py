@@ -3,6 +3,7 @@
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Variable, count, flag, or_nan, text
+from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 
 
 class ClaimVerdict(IntEnum):
@@ -40,6 +41,15 @@ def _number(meaning: str) -> Variable:
     return or_nan(meaning, dims=("claim",), rtol=1e-3, atol=1e-6)
 
 
+def _explains(meaning: str) -> Variable:
+    # whoever compares with an old archive asks for results: the id says which statement it is
+    reworded = RoundOff(
+        ComparedAs.unjudged,
+        "other words for what the row's id names are no other result",
+    )
+    return Variable(meaning, dims=("claim",), dtype="U", round_off=reworded)
+
+
 def _flag(meaning: str, flags: type[IntEnum]) -> Variable:
     return flag(meaning, flags, "claim")
 
@@ -49,9 +59,9 @@ claims_schema = DatasetSchema(
     title="The paper's statements, judged",
     coordinates={"claim": text("id of the statement", "claim")},
     variables={
-        "statement": text("the statement in our words", "claim"),
+        "statement": _explains("the statement in our words"),
         "section": text("where the paper says it", "claim"),
-        "check": text("what is measured", "claim"),
+        "check": _explains("what is measured"),
         "verdict": _flag(
             "what the data say, over the inferred feasible set as well", ClaimVerdict
         ),
