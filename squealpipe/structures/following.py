@@ -35,24 +35,39 @@ def successors(first: Spectrum, second: Spectrum) -> tuple[np.ndarray, np.ndarra
     rows, columns = linear_sum_assignment(cost)
     places[rows], shared[rows] = columns, mac[rows, columns]
     _order_merged(places, first, second)
-    _keep_twins(places, first, second)
+    _keep_twins(places, shared, first, second)
     return places, shared
 
 
-def _keep_twins(places: np.ndarray, first: Spectrum, second: Spectrum) -> None:
-    """Two modes that have merged stay together while another passes: all three shapes are alike."""
+def _keep_twins(
+    places: np.ndarray, shared: np.ndarray, first: Spectrum, second: Spectrum
+) -> None:
+    """Two modes that have merged stay together while another passes: all three shapes are alike.
+
+    Or they have parted, and one has merged with the other mode: nothing is said to be shared, so
+    that the step is halved.
+    """
     for row, value in enumerate(first.values):
         twins = np.flatnonzero(first.values == -value.conjugate())
-        if value.real <= 0 or value.imag == 0 or not twins.size or places[row] < 0:
+        if value.real <= 0 or value.imag == 0 or not twins.size:
             continue
-        reached = second.values[places[row]]
-        other = np.flatnonzero(second.values == -reached.conjugate())
-        if reached.real == 0 or reached.imag == 0 or not other.size:
+        both = [row, int(twins[0])]
+        # either of both may be the one whose shape is nearer to the other mode
+        for place in places[both]:
+            reached = second.values[place]
+            other = np.flatnonzero(second.values == -reached.conjugate())
+            if place >= 0 and reached.real != 0 and reached.imag != 0 and other.size:
+                break
+        else:
+            if (
+                places[both].min() >= 0
+            ):  # they have parted: shapes do not tell them apart
+                places[both] = sorted(places[both])
             continue
-        growing, falling = sorted(
-            (places[row], other[0]), key=lambda k: -second.values[k].real
-        )
-        for mode, place in ((row, growing), (int(twins[0]), falling)):
+        pair = sorted((place, other[0]), key=lambda k: -second.values[k].real)
+        if {*places[both]} != {*pair}:
+            shared[both] = 0.0
+        for mode, place in zip(both, pair, strict=True):
             holder = np.flatnonzero(places == place)
             places[holder], places[mode] = places[mode], place
 

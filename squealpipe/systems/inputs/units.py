@@ -443,6 +443,8 @@ def _unit(text: str) -> Any:
         if text in {"", "-"}:  # as states have it that have no unit
             text = "1"
         text = text.replace("U/min", "rpm")  # German; U is an enzyme's unit to pint
+        # m.s-1: pint multiplies at a point until its version 0.25 only
+        text = re.sub(r"(?<=\w)\.(?=[^\W\d])", "*", text)
         # m s-1, cm2: CF writes powers without a sign
         return _registry().parse_units(re.sub(r"(?<=[^\W\d])(-?\d)", r"**\1", text))
     except (*failures, ArithmeticError, SyntaxError, tokenize.TokenError, LookupError):
