@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from _pytest.runner import runtestprotocol
 from filelock import FileLock
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,6 +73,22 @@ def run_snakemake(directory, *arguments, surroundings=None):
 gc.set_threshold(200_000)
 
 
+def pytest_runtest_protocol(item, nextitem):
+    """A process of pytest-xdist reports a test once, or what went wrong around it.
+
+    Start, set-up, tear-down and end of each of 4,800 tests as messages took 3 s.
+    """
+    if not hasattr(item.config, "workerinput"):
+        return None
+    reports = runtestprotocol(item, log=False, nextitem=nextitem)
+    total = sum(report.duration for report in reports)
+    for report in reports:
+        if report.when == "call" or not report.passed:
+            report.duration = total
+            item.ihook.pytest_runtest_logreport(report=report)
+    return True
+
+
 def pytest_collection_finish():
     """What is loaded by now stays."""
     gc.freeze()
@@ -84,7 +101,12 @@ def pytest_itemcollected(item):
 
 
 def pytest_collection_modifyitems(items):
-    """The longest files first, so that all processes end at about the same time."""
+    """The longest files first, so that all processes end at about the same time.
+
+    And hypothesis tries no constants of our modules, which took each process of a new checkout 2 s.
+    """
+    if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
+        providers._get_local_constants = lambda: providers._local_constants
     longest = (
         "readme",
         "installation",
