@@ -1,5 +1,6 @@
 """Structures in motion against model A1, an integrator apart, and conserved quantities."""
 
+import functools
 import json
 import re
 from dataclasses import replace
@@ -107,6 +108,7 @@ def names(size):
     return [f"{letter}{i}" for letter in "qv" for i in range(1, size + 1)]
 
 
+@functools.cache
 def twelve_modes():
     """The elastic pad by its twelve lowest modes, with 1 % of damping."""
     return elastic_pad(modal_damping=0.01).reduce(n_modes=12, frequency_max=60e3)
