@@ -17,6 +17,7 @@ from squealpipe.laws.springs import springs_are_equal
 from squealpipe.paper.inference.angle_maps import (
     CLEAR,
     MAP_SIZES,
+    _lost,
     _runs,
     keeping_share,
     separating_share,
@@ -29,7 +30,7 @@ from squealpipe.paper.inference.constraints import (
     _unstable_only_without_sliding,
     measure,
 )
-from squealpipe.parameters import SCENES
+from squealpipe.parameters import HORIZON, SCENES
 from squealpipe.reading import READINGS
 from squealpipe.schema import Outcome
 from tests.former import FORMER
@@ -136,30 +137,80 @@ def test_the_black_region_is_where_a_map_shows_it(likely):
     for i, params in enumerate(candidates.sets):
         unstable = a3.regime(contact_system(params, *cells).invariants) > 0
         one = candidates.subset(np.full(unstable.sum(), i))
-        outcome, _ = _runs(one, cells[0][unstable], cells[1][unstable])
+        outcome, *_ = _runs(one, cells[0][unstable], cells[1][unstable])
         seen.append((outcome == Outcome.converged).mean())
     assert ((share > 0) != (np.array(seen) > 0)).sum() <= 2
     assert np.corrcoef(share, seen)[0, 1] > 0.9
 
 
 def test_every_unstable_cell_is_run_once_where_none_keeps_contact(likely, monkeypatch):
-    """Cells are run in three turns; where all of them separate, in each turn all that are left."""
+    """Cells are run in three turns; where all of them separate, in each turn all that are left.
+
+    Where they separate at once, none is left after the second turn.
+    """
     candidates = replace(Candidates(likely, 1e-9), exact=False)
-    run = []
-
-    def separate(some, alpha1, alpha2):
-        run.append(np.stack([some.fields["k3"], alpha1, alpha2]))
-        return np.full(alpha1.size, int(Outcome.separated)), None
-
-    monkeypatch.setattr("squealpipe.paper.inference.angle_maps._runs", separate)
-    assert (keeping_share(candidates) == 0).all()
     cells = candidates.unstable_cells(0.95)
     every = np.stack([likely["k3"][cells.owner], cells.alpha1, cells.alpha2])
+
+    def turns(time, sets=candidates):
+        run = []
+
+        def separate(some, alpha1, alpha2):
+            run.append(np.stack([some.fields["k3"], alpha1, alpha2]))
+            outcome = np.full(alpha1.size, int(Outcome.separated))
+            return outcome, np.full(alpha1.size, time), None
+
+        monkeypatch.setattr("squealpipe.paper.inference.angle_maps._runs", separate)
+        assert (keeping_share(sets) == 0).all()
+        return run
+
+    run = turns(0.9 * HORIZON)
     assert [turn.shape[1] for turn in run] == sorted(turn.shape[1] for turn in run)
-    order = [np.lexsort(each) for each in (np.concatenate(run, axis=1), every)]
-    np.testing.assert_array_equal(
-        np.concatenate(run, axis=1)[:, order[0]], every[:, order[1]]
-    )
+    for all_run in (run, turns(1.0, replace(candidates, exact=True))):
+        joined = np.concatenate(all_run, axis=1)
+        order = [np.lexsort(each) for each in (joined, every)]
+        np.testing.assert_array_equal(joined[:, order[0]], every[:, order[1]])
+    sizes = [turn.shape[1] for turn in turns(1.0)]
+    assert sizes == [run[0].shape[1], run[1].shape[1], 0]
+
+
+def test_cells_that_are_not_run_change_no_verdict(likely):
+    """Signs without the cells between those that lose contact at once, against those with them."""
+    exact = Candidates(likely, 1e-9)
+    signs = [keeping_share(each) > 0 for each in (exact, replace(exact, exact=False))]
+    np.testing.assert_array_equal(*signs)
+
+
+@pytest.mark.parametrize("hole", [0.0, 0.15])
+def test_midpoints_amidst_kept_ones_are_run_where_they_decide(
+    likely, monkeypatch, hole
+):
+    """Discs of many sizes keep contact but for a hole, which no midpoint of the coarsest map hits.
+
+    The verdicts are those by all midpoints, a fifth of which are not run.
+    """
+    candidates = Candidates(likely, 1e-9)
+    radius = dict(zip(likely["k3"], np.sqrt(np.linspace(1.52, 1.62, 24)), strict=True))
+    run = []
+
+    def lose(some, alpha1, alpha2, _):
+        run.append(alpha1.size)
+        reach = np.array([radius[k3] for k3 in some.fields["k3"]])
+        total, apart = alpha1 + alpha2 - np.pi, alpha1 - alpha2
+        lost = np.hypot(total, apart - 0.3) > np.sqrt(2.0) * reach
+        lost |= np.hypot(total, apart - 0.52) < hole
+        outcome = np.where(lost, int(Outcome.separated), int(Outcome.converged))
+        return outcome, None, np.zeros(alpha1.size)
+
+    monkeypatch.setattr("squealpipe.paper.inference.angle_maps._runs", lose)
+    holds, runs = [], []
+    for exact in (True, False):
+        run.clear()
+        holds.append(separating_share(replace(candidates, exact=exact)) > 0.5)
+        runs.append(sum(run))
+    np.testing.assert_array_equal(*holds)
+    assert 0 < holds[0].sum() < candidates.size
+    assert runs[1] < 0.8 * runs[0]
 
 
 @pytest.mark.release
@@ -193,11 +244,16 @@ def test_readings_share_what_the_mass_does_below_the_speed_of_the_belt(likely):
         "speed_ratio": np.geomspace(0.1, 300.0, 8),
     }
     sets = sets_of(groups, tol=1e-9, workers=1)
-    runs = []
+    runs, half = [], np.array([0.5, 0.5])
     for name in READINGS:
         read = sets.read(name)
         alone = separating_share(replace(read, known_maps=None), angles=(12,))
         np.testing.assert_array_equal(separating_share(read, angles=(12,)), alone)
+        maps = (
+            _lost(each, 12, None, half)
+            for each in (read, replace(read, known_maps=None))
+        )
+        np.testing.assert_array_equal(*maps)
         runs.append(alone)
     assert (runs[0] != runs[1]).any()
     assert len(sets.known_maps) == 16
