@@ -25,6 +25,7 @@ job.make(
         ),
         t_end=settings["dynamics.whirl_horizon"] * second,
         tol=tol,
+        workers=snakemake.threads,
     ),
     out.whirl,
 )
@@ -34,6 +35,7 @@ job.make(
         samples=settings["dynamics.transient_samples"],
         t_end=settings["dynamics.transient_horizon"] * second,
         tol=tol,
+        workers=snakemake.threads,
     ),
     out.transient,
 )

@@ -5,4 +5,8 @@ from squealpipe.study.job import Job
 from squealpipe.study.scatter import over_angles
 
 job = Job(snakemake)
-job.make(lambda: hammering_map(job.params, **over_angles(job, "hammering")))
+job.make(
+    lambda: hammering_map(
+        job.params, workers=snakemake.threads, **over_angles(job, "hammering")
+    )
+)

@@ -6,5 +6,10 @@ from squealpipe.study.scatter import over_angles
 
 job = Job(snakemake)
 job.make(
-    lambda: validity_map(job.params, model=job.model, **over_angles(job, "validity"))
+    lambda: validity_map(
+        job.params,
+        model=job.model,
+        workers=snakemake.threads,
+        **over_angles(job, "validity"),
+    )
 )

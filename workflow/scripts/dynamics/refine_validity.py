@@ -13,5 +13,6 @@ job.make(
         t_end=settings["dynamics.validity_horizon"] * params.time_unit,
         model=job.model,
         tol=settings["dynamics.tol"],
+        workers=snakemake.threads,
     )
 )

@@ -8,6 +8,9 @@ job = Job(snakemake)
 settings = job.settings
 job.make(
     lambda: infer_parameters(
-        parameters_of(settings), reading=settings["reading"], **settings["inference"]
+        parameters_of(settings),
+        reading=settings["reading"],
+        workers=snakemake.threads,
+        **settings["inference"],
     )
 )

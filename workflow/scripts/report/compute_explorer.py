@@ -15,4 +15,6 @@ exact = [
     if 0.0 <= scene[name] <= np.pi
 ]
 angles = np.union1d(angles, exact)
-job.make(lambda: explorer_data(job.params, angles, **options))
+job.make(
+    lambda: explorer_data(job.params, angles, workers=snakemake.threads, **options)
+)
