@@ -375,7 +375,7 @@ def _advance(table: Any) -> int:
     t = _record_at(address)
     m = memory_at(address)
     mem = view(t.series, (t.n_terms, t.n_series), np.float64)
-    c = view(t.series, (1, t.n_terms, t.n_series), np.float64).T
+    c = view(t.series, (1, t.n_terms, t.n_series), np.float64)[:, :, ::1].T
     k = plan_at(t.inverses)
     return int(_rounds(address, t, m, c, k, mem))
 
@@ -385,7 +385,7 @@ def _take(table: int) -> None:
     t = _record_at(table)
     m = memory_at(table)
     mem = view(t.series, (t.n_terms, t.n_series), np.float64)
-    c = view(t.series, (1, t.n_terms, t.n_series), np.float64).T
+    c = view(t.series, (1, t.n_terms, t.n_series), np.float64)[:, :, ::1].T
     k = plan_at(t.inverses)
     rows = numbers_of(k, parameters_of(t, LANE))
     special = _step(t, m, c, k, rows, mem, m.scratch[4:6])

@@ -356,7 +356,8 @@ def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: ``layout.LOOP_TABLE``."""
     t = _numba.carray(table, (1,), layout.LOOP_TABLE)[0]
     m = memory_at(address_of(table))
-    c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)
+    # with any strides, as that of structures: both loops share what is compiled for it
+    c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)[:, :, ::1]
     return int(_rounds(t, m, c))
 
 

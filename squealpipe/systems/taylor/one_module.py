@@ -5,6 +5,7 @@ links it into each that calls it and does the same again there: a tree of calls 
 level. Here numba writes LLVM's code only; what a loop calls is linked once, optimized once with
 numba's own passes, and compiled.
 Source: numba's pull request 9566, which proposes the same for functions that Python does not call.
+A part that is taken of an array is what was put there before, which numba has LLVM find out.
 Invariant: what was written for a loop can be linked into other code that numba compiles, too; the
 results are the same to the last bit.
 Cost: of what is left a third each is LLVM's and for writing LLVM's code, a tenth for types.
@@ -19,6 +20,7 @@ import llvmlite.binding
 import numba
 from llvmlite import ir
 from llvmlite.binding import Linkage
+from llvmlite.ir import instructions
 from numba.core import codegen
 from numba.core.registry import cpu_target
 from numba.np import arrayobj
@@ -32,12 +34,26 @@ _Codegen: Any = codegen.JITCPUCodegen
 _target: Any = cpu_target
 _arrays: Any = arrayobj
 _llvm: Any = llvmlite.binding
+_InsertValue: Any = instructions.InsertValue
 
 
 class _Part(_Library):  # type: ignore[misc]
     """Code of a function that is optimized and compiled only in what calls it."""
 
     _shared_module: Any
+
+    def add_ir_module(self, ir_module: Any) -> None:
+        """Add code that numba wrote, without the arrays of which only parts are needed."""
+        for function in ir_module.functions:
+            needed: set[int] = set()
+            for block in reversed(function.blocks):
+                kept = []
+                for each in reversed(block.instructions):
+                    if id(each) in needed or not isinstance(each, _InsertValue):
+                        needed.update(map(id, each.operands))
+                        kept.append(each)
+                block.instructions[:] = reversed(kept)
+        super().add_ir_module(ir_module)
 
     def _optimize_functions(self, ll_module: Any) -> None:
         """Do what numba does, which builds LLVM's passes anew for each function that is named."""
@@ -150,18 +166,46 @@ class _Array:
         return self._value
 
 
+_usual_extract: Any = ir.IRBuilder.extract_value
+
+
+def _part_of(builder: Any, whole: Any, place: Any, name: str = "") -> Any:
+    """Return a part of a value, as it was put there if that is known."""
+    path = list(place) if isinstance(place, tuple | list) else [place]
+    while isinstance(whole, _InsertValue):
+        put = list(whole.indices)
+        if put == path:
+            return whole.value
+        # one that was put beside this part; not around or into it
+        if put[: len(path)] == path or path[: len(put)] == put:
+            break
+        whole = whole.aggregate
+    return _usual_extract(builder, whole, path, name)
+
+
+@cache
+def _size(kind: Any) -> int:
+    """Return the bytes of a type; llvmlite writes and reads a module for each question."""
+    size: int = kind.get_abi_size(_target.target_context.target_data)
+    return size
+
+
 @contextmanager
 def only_written() -> Iterator[None]:
     """Let numba compile nothing of what it writes meanwhile."""
     context = _target.target_context
     usual, usual_array = context.codegen(), _arrays.make_array
     context._internal_codegen = _parts()  # noqa: SLF001 (has no public setter)
+    context.get_abi_sizeof = _size
     _arrays.make_array = partial(partial, _Array)
+    ir.IRBuilder.extract_value = _part_of
     try:
         yield
     finally:
         context._internal_codegen = usual  # noqa: SLF001
+        del context.get_abi_sizeof
         _arrays.make_array = usual_array
+        ir.IRBuilder.extract_value = _usual_extract
 
 
 def compile_entries(

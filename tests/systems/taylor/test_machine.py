@@ -5,9 +5,11 @@ import errno
 import os
 from functools import cache
 
+import llvmlite.binding
 import numba
 import numpy as np
 import pytest
+from llvmlite import ir
 from numba.core import codegen
 from numba.np import arrayobj
 
@@ -164,3 +166,26 @@ def test_parts_read_and_write_arrays_as_python_does(monkeypatch):
     assert by_compiled_code(*compiled, 2, 1) == mix.py_func(*true, 2, 1)
     np.testing.assert_array_equal(compiled[0], true[0])
     np.testing.assert_array_equal(compiled[1], true[1])
+
+
+def test_parts_of_values_are_what_was_put_there():
+    """A part beside another one, one of a whole that was put in, and a whole with a part."""
+    word = ir.IntType(64)
+    pair = ir.LiteralStructType([word, word])
+    kind = ir.LiteralStructType([word, pair])
+    function = ir.Function(ir.Module(), ir.FunctionType(word, [word, pair]), "parts")
+    builder = ir.IRBuilder(function.append_basic_block())
+    number, both = function.args
+    with one_module.only_written():
+        whole = builder.insert_value(ir.Constant(kind, None), both, 1)
+        whole = builder.insert_value(whole, number, 0)
+        assert builder.extract_value(whole, 0) is number
+        assert builder.extract_value(whole, [1]) is both
+        of_both = builder.extract_value(whole, [1, 0])
+        changed = builder.insert_value(whole, of_both, [1, 1])
+        assert builder.extract_value(changed, [1, 1]) is of_both
+        mixed = builder.extract_value(changed, 1)
+    assert of_both.opname == "extractvalue"
+    assert (mixed.opname, mixed.aggregate) == ("extractvalue", changed)
+    builder.ret(of_both)
+    llvmlite.binding.parse_assembly(str(function.module)).verify()
