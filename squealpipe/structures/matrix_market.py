@@ -38,7 +38,7 @@ def read_matrix_market(path: Path) -> Any:
             "skew-symmetric": rows * (rows - 1) // 2,
         }.get(symmetry, rows * (rows + 1) // 2)
     _check_entries(content, stated, form, field)
-    matrix = scipy.io.mmread(io.BytesIO(content))
+    matrix = scipy.io.mmread(io.BytesIO(content), spmatrix=False)
     if symmetry != "general" and sp.issparse(matrix):
         once = sp.csr_array(matrix)  # entries at one place are added up
         if once.nnz < matrix.nnz:
