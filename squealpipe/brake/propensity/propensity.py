@@ -22,7 +22,7 @@ import xarray as xr
 from annotated_types import Ge, Interval, MinLen
 
 from squealpipe.brake.a1.ensemble import LARGEST_REACH, run_ensemble
-from squealpipe.brake.dynamics.motion import as_judged, classify_motion
+from squealpipe.brake.dynamics.motion import as_judged, classify_motion, whirls
 from squealpipe.brake.models import a3
 from squealpipe.brake.models.contact_system import contact_system, with_drag
 from squealpipe.brake.models.damped import damped_system, is_undamped, regime
@@ -165,24 +165,28 @@ def _events(
     tol: float,
     workers: int | None,
 ) -> np.ndarray:
-    """Return whether contact loss, irregular hammering and the whirl occur, (3, size)."""
-    run = run_ensemble(
-        fields,
-        alpha1,
-        alpha2,
-        **as_judged(t_end),
-        tol=tol,
-        tracked=(LARGEST_REACH,),
-        workers=workers,
+    """Return whether contact loss, irregular hammering and the whirl occur, (3, size).
+
+    What keeps contact does not hammer, so no perturbation is followed along it.
+    """
+    run = partial(
+        run_ensemble, tol=tol, tracked=(LARGEST_REACH,), workers=workers, t_end=t_end
     )
-    motion, _ = classify_motion(run, SimpleNamespace(**fields))
-    return np.array(
-        [
-            np.isfinite(run.first_separation_time),
-            motion == MotionFlag.irregular_hammering,
-            motion == MotionFlag.whirl,
-        ]
+    kept = run(fields, alpha1, alpha2, stop_at_first_separation=True)
+    rows = np.flatnonzero((kept.outcome != Outcome.converged) | whirls(kept))
+    some = {
+        name: value[rows] if isinstance(value, np.ndarray) else value
+        for name, value in fields.items()
+    }
+    judged = run(some, alpha1[rows], alpha2[rows], **as_judged(t_end))
+    motion, _ = classify_motion(judged, SimpleNamespace(**some))
+    events = np.zeros((3, alpha1.size), bool)
+    events[:, rows] = (
+        np.isfinite(judged.first_separation_time),
+        motion == MotionFlag.irregular_hammering,
+        motion == MotionFlag.whirl,
     )
+    return events
 
 
 def _flutters(

@@ -1,18 +1,22 @@
 """Propensities against closed forms; distributions and settings."""
 
 from time import process_time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy import stats
 
 from squealpipe import critical_friction_map, stability_map
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.dynamics.motion import as_judged, classify_motion
 from squealpipe.brake.propensity.distributions import (
     DISTRIBUTIONS,
     centred,
     distribution,
 )
-from squealpipe.brake.propensity.propensity import propensity
+from squealpipe.brake.propensity.propensity import _events, propensity
+from squealpipe.brake.schema.dynamics.runs import MotionFlag
 from squealpipe.codes import LinearRegime
 from squealpipe.paper import robustness
 from squealpipe.paper.inference.inference import infer_parameters
@@ -274,3 +278,20 @@ def test_distributions_have_the_numbers_that_they_are_given():
     # the quantile one standard deviation of the logarithm above the median
     quantiles = lognormal.ppf([0.5, stats.norm.cdf(1.0)])
     assert quantiles == pytest.approx([3.0, 3.0 * np.exp(0.2)])
+
+
+def test_events_are_those_of_runs_that_are_all_judged():
+    """A perturbation along every run, against those alone that lose contact; of some none does."""
+    generator = np.random.default_rng(3)
+    angles = generator.uniform(0.0, np.pi, (2, 150))
+    fields = {**FORMER.as_dict(), "mu": generator.uniform(0.1, 0.6, 150)}
+    given = {"tol": 1e-9, "workers": 1}
+    run = run_ensemble(fields, *angles, **as_judged(200.0), **given)
+    motion, _ = classify_motion(run, SimpleNamespace(**fields))
+    lost = np.isfinite(run.first_separation_time)
+    kinds = (MotionFlag.irregular_hammering, MotionFlag.whirl)
+    expected = np.array([lost, *(motion == kind for kind in kinds)])
+    assert (expected.sum(axis=1) > 0).all()
+    np.testing.assert_array_equal(_events(fields, *angles, 200.0, **given), expected)
+    kept = fields | {"mu": fields["mu"][~lost]}
+    assert not _events(kept, *angles[:, ~lost], 200.0, **given).any()
