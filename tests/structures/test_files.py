@@ -26,13 +26,17 @@ BY_NODE = CONTACTS.replace("2:1 3:-0.5,1:1", "3.2:1 17.1:-0.5,3.1:1")
 """The same contact where the matrices name nodes and directions."""
 
 
-def structure_of(
+def put(
     folder,
     text="mass: M.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n",
     contacts=CONTACTS,
 ):
     (folder / "contacts.csv").write_text(contacts)
     (folder / "pad.yaml").write_text(text)
+
+
+def structure_of(folder, *given, **options):
+    put(folder, *given, **options)
     return Structure.read(folder / "pad.yaml")
 
 
@@ -451,7 +455,7 @@ def no_name_of_a_file(folder):
     ],
 )
 def test_a_bad_file_is_refused_with_its_remedy(tmp_path, spoil, words):
-    structure_of(tmp_path, as_matrix_market(tmp_path))
+    put(tmp_path, as_matrix_market(tmp_path))
     spoil(tmp_path)
     with pytest.raises(ValueError, match=words):
         Structure.read(tmp_path / "pad.yaml")

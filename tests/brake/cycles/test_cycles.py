@@ -231,7 +231,7 @@ def test_as_a_system_a_pad_has_the_same_cycle_and_branch_in_any_units():
     np.testing.assert_allclose(other.x_start, one.x_start * length, rtol=1e-7)
 
 
-@pytest.mark.parametrize("speed", [1.25, pytest.param(1.55, marks=pytest.mark.release)])
+@pytest.mark.parametrize("speed", UNSTABLE)
 def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
     params = oscillator(1e3, speed, **BSTAB)
     guess = (equilibrium(speed) + UNSTABLE[speed][0], 0.25, 0.0, 0.0)
