@@ -90,7 +90,8 @@ def design(place, names, axes, params):
 @pytest.mark.parametrize(
     ("seed", "cells"),
     [
-        (2, 50),
+        (2, 25),
+        pytest.param(2, 50, marks=pytest.mark.release),
         *(pytest.param(i, 300, marks=pytest.mark.release) for i in some(range(20))),
     ],
 )
