@@ -121,6 +121,7 @@ def test_a_slow_belt_breaks_the_assumption_and_says_so():
 
 NEAR_FIRST_REST = FORMER.with_(k1=0.975, k2=2.68, k3=0.318, mu=0.85)
 NEAR_SECOND_REST = FORMER.with_(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
+PEAKS = np.linspace(1.05, 4.0, 15)
 
 
 @pytest.mark.parametrize(
@@ -134,10 +135,18 @@ NEAR_SECOND_REST = FORMER.with_(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
         ),
     ],
 )
-def test_extremes_are_those_of_an_integration(params, turn):
+@pytest.mark.parametrize(
+    "peaks",
+    [
+        PEAKS[[0, 1, 2, 8, 14]],
+        pytest.param(PEAKS[[*range(3, 8), *range(9, 14)]], marks=pytest.mark.release),
+    ],
+    ids=["few", "others"],
+)
+def test_extremes_are_those_of_an_integration(params, turn, peaks):
     """Where x turns shortly after or before an instant of rest among them."""
     *angles, mode = turn
-    for peak in np.linspace(1.05, 4.0, 15):
+    for peak in peaks:
         orbit = periodic_orbit(params, *angles, mode=mode, y_peak=peak)
         if orbit.outcome != Outcome.converged:
             continue
