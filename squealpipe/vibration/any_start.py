@@ -182,14 +182,18 @@ def side_by_side(
     settle: Callable[[Sequence[Start]], Sequence[SettledRun]],
 ) -> None:
     """Run generators to their ends; what they ask for at a time is settled together."""
+    # rounds after which a search is told to be half done; one takes ten to forty
+    typical = 20
     answers: dict[int, Any] = dict.fromkeys(range(len(searches)))
+    rounds = 0
     while answers:
         asked: dict[int, list[Start]] = {}
         for number, runs in answers.items():
             with suppress(StopIteration):
                 asked[number] = searches[number].send(runs)
-        ended = 1.0 - len(asked) / len(searches)
-        report(partial(float, ended))
+        rounds += 1
+        left = len(asked) / len(searches) * typical / (typical + rounds)
+        report(partial(float, 1.0 - left))
         starts = [start for those in asked.values() for start in those]
         settled = iter(settle(starts) if starts else [])
         answers = {

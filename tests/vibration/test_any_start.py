@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from squealpipe.systems.progress import shown
 from squealpipe.vibration.any_start import any_start, lead, side_by_side, sides_of
 from squealpipe.vibration.boundaries import Cure
 from squealpipe.vibration.settled_runs import Start
@@ -108,8 +109,13 @@ def test_the_nearer_of_both_ends_is_found_and_no_start_is_run_twice(above):
         ends = (0.6, above) if value > 0.0 else (-np.inf, np.inf)
         return number == 2 and not ends[0] < value < ends[1]
 
-    subjects = Subjects(lasts)
-    found = any_start(cures, sides_of(cures), {}, subjects, quiet=True, always=True)
+    subjects, shares = Subjects(lasts), []
+    with shown(shares.append):
+        found = any_start(cures, sides_of(cures), {}, subjects, quiet=True, always=True)
+    assert shares == sorted(shares)
+    assert len(shares) > 5
+    assert shares[0] < 0.1
+    assert shares[-1] == 1.0
     assert list(found) == ["one"]
     nearer = 0.6 if above - 1.0 > 0.4 else above
     assert found["one"] == pytest.approx(nearer, rel=1.1e-2)

@@ -13,7 +13,7 @@ from squealpipe.brake.assess.assess import judge
 from squealpipe.brake.assess.cures import growth_margin
 from squealpipe.brake.assess.designs import cures_of
 from squealpipe.brake.assess.levels import levels
-from squealpipe.brake.assess.settling import pushed, settle, start_at
+from squealpipe.brake.assess.settling import pushed, settle, start_at, strikes
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.windows import run_windows
 from squealpipe.brake.schema.assess import CURES
@@ -118,6 +118,25 @@ def test_the_answer_is_told_before_the_search_for_what_stops_it(
     numbers = [f"--{name.replace('_', '-')}={value}" for name, value in NUMBERS.items()]
     run(["assess", "22deg", "46deg", *numbers])
     assert capsys.readouterr().out.splitlines() == list(first_lines(hammering))
+
+
+def test_strikes_wait_for_the_search_where_no_fact_depends_on_them(monkeypatch):
+    """They take half of the time to a verdict; what a push leaves quiet is "unless struck"."""
+    number = []
+
+    def counted(starts, **options):
+        number.append(len(starts))
+        return settle(starts, **options)
+
+    monkeypatch.setattr("squealpipe.brake.assess.assess.settle", counted)
+    noisy = judge(PAD, *HAMMER, tol=1e-10)
+    assert (noisy.verdict, len(noisy.later), number) == (Verdict.hammers, 3, [2])
+    quiet = judge(PAD.with_(mu=0.0, mu_static=0.0), *HAMMER, tol=1e-10)
+    assert (quiet.verdict, len(quiet.later), number) == (Verdict.quiet, 0, [2, 5])
+    states = np.array([start.state for start in noisy.later])
+    sliding = Sliding.of(noisy.design)
+    expected = [start.state for start in strikes(noisy.design, sliding)]
+    np.testing.assert_array_equal(states, expected)
 
 
 @pytest.mark.release
