@@ -38,23 +38,22 @@ class SpecialPoint(IntEnum):
     fold = 2
 
 
-class Verdict(IntEnum):
+class Worded(IntEnum):
+    """Flags that people read in words; datasets and tables keep their names."""
+
+    @property
+    def words(self) -> str:
+        """The flag as people read it, everywhere: its name, where its class has no other word."""
+        return self.name.replace("_", " ")
+
+
+class Verdict(Worded):
     """Verdict on a motion: what it ends in."""
 
     quiet = 0
     squeals = 1
     hammers = 2
     undetermined = 3
-
-    @property
-    def words(self) -> str:
-        """The verdict as people read it, everywhere; datasets and tables keep its name."""
-        return {
-            Verdict.quiet: "quiet",
-            Verdict.squeals: "squeals",
-            Verdict.hammers: "hammers",
-            Verdict.undetermined: "undetermined",
-        }[self]
 
     @property
     def opening(self) -> str:

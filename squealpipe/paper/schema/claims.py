@@ -2,11 +2,12 @@
 
 from enum import IntEnum
 
+from squealpipe.codes import Worded
 from squealpipe.schema import DatasetSchema, Variable, count, flag, or_nan, text
 from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 
 
-class ClaimVerdict(IntEnum):
+class ClaimVerdict(Worded):
     """Verdict of the data on a statement."""
 
     holds = 0
@@ -14,11 +15,6 @@ class ClaimVerdict(IntEnum):
     fails = 2
     depends_on_the_parameters = 3
     cannot_be_decided = 4
-
-    @property
-    def words(self) -> str:
-        """The verdict as people read it."""
-        return self.name.replace("_", " ")
 
 
 class Basis(IntEnum):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from squealpipe.codes import Verdict
+from squealpipe.codes import Verdict, Worded
 from squealpipe.schema import (
     DatasetSchema,
     Outcome,
@@ -46,7 +46,7 @@ JUST_ABOVE = -1
 """Track of what a push just above the onset ends in; others are of an attractor."""
 
 
-class Kind(IntEnum):
+class Kind(Worded):
     """Kind of a settled motion."""
 
     undetermined = 0
@@ -57,14 +57,8 @@ class Kind(IntEnum):
 
     @property
     def words(self) -> str:
-        """The kind as people read it, everywhere; datasets and tables keep its name."""
-        return {
-            Kind.undetermined: "undetermined",
-            Kind.steady_sliding: "steady sliding",
-            Kind.cycle: "cycle",
-            Kind.torus: "quasi-periodic",
-            Kind.irregular: "irregular",
-        }[self]
+        """The kind as people read it."""
+        return "quasi-periodic" if self is Kind.torus else super().words
 
 
 class OnsetKind(IntEnum):
