@@ -213,7 +213,7 @@ class Extended:
             self.filled = np.flatnonzero(np.diff(rows.indptr))
             self.starts = rows.indptr[self.filled]
             self.indices, data = rows.indices, rows.data
-        self.data, self.size = data.astype(np.longdouble), matrix.shape[0]
+        self.data, self.size = data, matrix.shape[0]
 
     def product(self, vector: np.ndarray) -> np.ndarray:
         """A x."""
