@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -206,12 +207,25 @@ def compute_of_structure(
 
 
 def say_doubts(structure: Any) -> None:
-    """Say where faces of a mesh are further apart than their facets explain."""
+    """Say where faces are further apart than facets explain, and if there are two slidings."""
     from squealpipe.structures.meshes.gaps import gaps_of
+    from squealpipe.structures.sliding import NoSlidingError, another_sliding
 
     for gaps in gaps_of(structure.contacts):
         if gaps.is_doubtful:
             say(f"warning: {gaps.doubt()}")
+    with suppress(NoSlidingError):  # which the command tells
+        forces = another_sliding(structure)
+        if forces is not None:
+            shown = ", ".join(
+                f"{contact.name} {force:.3g}"
+                for contact, force in zip(structure.contacts, forces, strict=True)
+            )
+            say(
+                "warning: steady sliding is not unique; what follows is about the state nearest to "
+                f"the preloads. In another one contact forces are {shown} N: a strike may end "
+                "there, or carry the structure beyond it"
+            )
 
 
 def _say_band(limit: float | None) -> None:

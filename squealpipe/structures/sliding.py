@@ -239,6 +239,25 @@ def steady_sliding(
     )
 
 
+def another_sliding(structure: ContactStructure) -> np.ndarray | None:
+    """Return contact forces of another steady sliding than the one that is judged, N.
+
+    Contacts may hold a structure near them whose stiffness is indefinite, as by centrifugal
+    softening: farther away, where some are open, it balances once more, and beyond that it runs
+    away. Much friction has two states, too. It is None where there is none, or where too many
+    combinations of open contacts would have to be tried.
+
+    Raises:
+        NoSlidingError: there is no steady sliding.
+    """
+    if not structure.contacts:
+        return None
+    sliding = steady_sliding(structure, structure.mu, structure.belt_speed)
+    at_speed = structure.at_speed(structure.belt_speed)
+    pivoting = _Pivoting(at_speed, _Laws(at_speed), sliding.drag)
+    return pivoting.another(sliding.piece, sliding.force)
+
+
 def _listed(forces: np.ndarray) -> str:
     shown = [f"{force:g}" for force in forces[:4]]
     return ", ".join([*shown, "…"] if len(forces) > 4 else shown)

@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 import scipy.linalg as la
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from squealpipe import Contact, Structure
+from squealpipe.cli.structures import say_doubts
 from squealpipe.structures import Rotation
 from squealpipe.structures.files import read
 from squealpipe.structures.schema.structures import SpeedOnset
+from squealpipe.structures.sliding import another_sliding
 
 
 class Rotor:
@@ -239,3 +242,43 @@ speed_terms:
     )
     with pytest.raises(ValueError, match="matrix and power are needed"):
         read(tmp_path / "t.yaml", Structure)
+
+
+@pytest.mark.parametrize("speed", [0.6, 0.9, 1.2])
+def test_softening_has_a_second_state_with_an_open_contact_and_it_is_told(
+    speed, capsys
+):
+    """From 0.84 m/s on; modes said that the state near the contact is stable, and no more."""
+    softening, load, contact = 1.0, -1.0, Contact("pad", {1: 1.0}, {0: 1.0}, 3.0, 1.0)
+    structure = Structure(
+        np.eye(2), np.diag([1.0, 0.7]), modal_damping=0.02, contacts=[contact], mu=0.3,
+        belt_speed=1.0, load=[0.0, load],
+        speed_terms={"stiffness": [(-softening * np.diag([0.0, 1.0]), 2)]},
+    ).at_speed(speed)  # fmt: skip
+    stiffness = 0.7 - softening * speed**2
+    # by hand: away from the contact, beyond where its force ends
+    apart = load / stiffness
+    exists = apart > contact.compression
+    assert exists == (speed > 0.84)
+    forces = another_sliding(structure)
+    say_doubts(structure)
+    told = capsys.readouterr().out
+    if not exists:
+        assert forces is None
+        assert not told
+        return
+    assert forces == pytest.approx([0.0], abs=1e-12)
+    assert "contact forces are pad 0 N" in told
+
+    # a mass there runs away or comes back to the contact, as another integrator has it
+    def field(_, now):
+        normal = max(contact.preload - contact.stiffness * now[0], 0.0)
+        return now[1], load + normal - stiffness * now[0] - 0.1 * now[1]
+
+    closed = (load + contact.preload) / (stiffness + contact.stiffness)
+    near, beyond = (
+        solve_ivp(field, (0.0, 60.0), (share * apart, 0.0), rtol=1e-9).y[0, -1]
+        for share in (0.99, 1.01)
+    )
+    assert near == pytest.approx(closed, abs=0.05 * apart)
+    assert beyond > 10.0 * apart
