@@ -68,13 +68,12 @@ def draw_methods(
         right = mine & (worth == Reliability.right)
         look: dict[str, Any] = {"color": colour, "ms": 3.5, "lw": 0.8, "zorder": 2}
         look |= {"marker": marker}
-        # its marks are in the legend only: they are drawn apart, above the line
-        line: dict[str, Any] = {"ls": dash, "markevery": []}
-        line["label"] = style.symbols(method)
+        line: dict[str, Any] = {"ls": dash, "label": style.symbols(method)}
+        line["markevery"] = np.flatnonzero(right[mine]).tolist()
         axes.plot(error[mine], values[mine], **look, **line)
-        for marked, fill in ((mine & ~right, style.Colour.white), (right, colour)):
-            if marked.any():
-                axes.plot(error[marked], values[marked], **look, ls="none", mfc=fill)
+        if (hollow := mine & ~right).any():
+            look |= {"ls": "none", "mfc": style.Colour.white}
+            axes.plot(error[hollow], values[hollow], **look)
     wrong = fine & (worth == Reliability.silently_wrong)
     ours = fine & (rows.role.values == Role.our_setting)
     cross: dict[str, Any] = {
@@ -86,7 +85,9 @@ def draw_methods(
     axes.plot(error[wrong], values[wrong], "x", label="silently wrong", **cross)
     circle = cross | {"color": style.Colour.red, "ms": 9, "mfc": "none", "mew": 1.0}
     axes.plot(error[ours], values[ours], "o", label=ring, **circle)
-    axes.set(xscale="log", yscale="log")
+    axes.set_yscale("log")
+    if axes.get_xscale() != "log":  # once for all panels that share it
+        axes.set_xscale("log")
     axes.minorticks_off()
     # over less than two decades, powers of ten alone leave an axis almost without labels
     if values[fine].max() < 100.0 * values[fine].min():
