@@ -152,7 +152,9 @@ def _systems(
     """
     damped = (numbers["damping1"] > 0) | (numbers["damping2"] > 0)
     one_mu = numbers["static_mu"] == numbers["mu"]
-    laws = np.where(one_mu & np.isin(laws, FALLING), COULOMB, laws)
+    falling = np.isin(laws, FALLING)
+    if falling.any():
+        laws = np.where(one_mu & falling, COULOMB, laws)
     with np.errstate(over="ignore"):
         long = LONG_SPRING * numbers["preload"]
     forms = np.broadcast_arrays(
@@ -161,10 +163,10 @@ def _systems(
         one_mu & (laws == COULOMB),
         *(numbers[name] > long for name in ("length1", "length2")),
     )
-    code = sum(
-        np.unique(form, return_inverse=True)[1].reshape(form.shape) * 8**i
-        for i, form in enumerate(forms)
-    )
+    _, code = np.unique(laws, return_inverse=True)
+    code = code.reshape(laws.shape)
+    for form in forms[1:]:
+        code = 2 * code + form
     if not code.size:
         return (brake(model=model, one_mu=True),), code
     _, first, which = np.unique(code, return_index=True, return_inverse=True)
