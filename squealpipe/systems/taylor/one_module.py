@@ -21,7 +21,7 @@ import numba
 from llvmlite import ir
 from llvmlite.binding import Linkage
 from llvmlite.ir import instructions
-from numba.core import codegen
+from numba.core import codegen, postproc, transforms
 from numba.core.registry import cpu_target
 from numba.np import arrayobj
 
@@ -35,6 +35,9 @@ _target: Any = cpu_target
 _arrays: Any = arrayobj
 _llvm: Any = llvmlite.binding
 _InsertValue: Any = instructions.InsertValue
+_PostProcessor: Any = postproc.PostProcessor
+_Lifetimes: Any = postproc.VariableLifetime
+_canonical: Any = transforms.canonicalize_cfg
 
 
 class _Part(_Library):  # type: ignore[misc]
@@ -183,6 +186,20 @@ def _part_of(builder: Any, whole: Any, place: Any, name: str = "") -> Any:
     return _usual_extract(builder, whole, path, name)
 
 
+_usual_run: Any = _PostProcessor.run
+
+
+def _order_blocks(processor: Any, emit_dels: bool = False, **options: Any) -> None:
+    """Order blocks as numba does after each pass, which notes where variables end for nobody."""
+    code = processor.func_ir
+    if emit_dels or code.is_generator:
+        _usual_run(processor, emit_dels, **options)
+        return
+    code.blocks = _canonical(code.blocks)
+    code.variable_lifetime = _Lifetimes(code.blocks)  # looks when it is asked
+    code.generator_info = None
+
+
 @cache
 def _size(kind: Any) -> int:
     """Return the bytes of a type; llvmlite writes and reads a module for each question."""
@@ -199,6 +216,7 @@ def only_written() -> Iterator[None]:
     context.get_abi_sizeof = _size
     _arrays.make_array = partial(partial, _Array)
     ir.IRBuilder.extract_value = _part_of
+    _PostProcessor.run = _order_blocks
     try:
         yield
     finally:
@@ -206,6 +224,7 @@ def only_written() -> Iterator[None]:
         del context.get_abi_sizeof
         _arrays.make_array = usual_array
         ir.IRBuilder.extract_value = _usual_extract
+        _PostProcessor.run = _usual_run
 
 
 def compile_entries(
