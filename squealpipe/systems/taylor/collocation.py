@@ -7,13 +7,16 @@ import math
 from functools import cache
 from typing import Any
 
-import numba
 import numpy as np
 
 from squealpipe.systems.compiled import part
-from squealpipe.systems.taylor.lanes import Workspace, compile_advance, view
-
-_numba: Any = numba
+from squealpipe.systems.taylor.lanes import (
+    Workspace,
+    address_of,
+    compile_advance,
+    record_viewer,
+    view,
+)
 
 
 @part
@@ -77,6 +80,7 @@ TRANSFER_SIZES = ("n", "columns", "nodes", "steps", "legs", "together", "sweeps"
 TRANSFER_TABLE = np.dtype(
     [(name, "i8") for name in (*TRANSFER_ARRAYS, *TRANSFER_SIZES)]
 )
+_record_at: Any = record_viewer(TRANSFER_TABLE)
 
 
 def transfer(
@@ -144,7 +148,7 @@ def _multiply_by_step(
 
 def _transfer(table: Any) -> int:
     """Do what :func:`transfer` says; returns 0. The table: ``TRANSFER_TABLE``."""
-    t = _numba.carray(table, (1,), TRANSFER_TABLE)[0]
+    t = _record_at(address_of(table))
     n, columns, nodes, steps = t.n, t.columns, t.nodes, t.steps
     slopes = view(t.slopes, (n, columns, nodes, steps), np.float64)
     lengths, leg = (

@@ -26,10 +26,10 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from squealpipe.systems import compiled
-from squealpipe.systems.compiled import views
 from squealpipe.systems.progress import report
 from squealpipe.systems.taylor import simd
 from squealpipe.systems.taylor.machine import address_of_entry
+from squealpipe.systems.taylor.memory import contiguous
 from squealpipe.systems.taylor.series import (
     HybridSystem,
     longest_source,
@@ -90,18 +90,6 @@ def compile_system(
     return CompiledSystem(code, n_series)
 
 
-def _to_pointer(typing_context: Any, value: Any) -> Any:
-    """Turn an integer into a pointer."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
-
-    return types.voidptr(types.intp), generate
-
-
-_address: Any = intrinsic(_to_pointer)
-
-
 def _to_number(typing_context: Any, value: Any) -> Any:
     """Turn a pointer into an integer."""
 
@@ -131,20 +119,36 @@ def _call(typing_context: Any, function: Any, arguments: Any) -> Any:
 call: Any = intrinsic(_call)
 
 
-@views
-def view(address: int, shape: Any, dtype: Any) -> Any:
-    """Return the array at an address."""
-    return _numba.carray(_address(address), shape, dtype)
+def _view(typing_context: Any, address: Any, shape: Any, element: Any) -> Any:
+    """Make the array at an address."""
+    kind = types.Array(element.dtype, len(shape), "C")
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        kinds = signature.args[1]
+        given = _cgutils.unpack_tuple(builder, values[1], len(kinds))
+        sizes = [
+            context.cast(builder, size, of, types.intp)
+            for size, of in zip(given, kinds, strict=True)
+        ]
+        return contiguous(context, builder, kind, values[0], sizes)
+
+    return kind(types.intp, shape, element), generate
+
+
+view: Any = intrinsic(_view)
 
 
 def record_viewer(record: np.dtype) -> Any:
     """Return a compiled function that gives the record of a type at an address."""
+    kind = _numba.from_dtype(record)
 
-    @views
-    def record_at(address: int) -> Any:
-        return _numba.carray(_address(address), (1,), record)[0]
+    def at(typing_context: Any, address: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            return builder.inttoptr(values[0], context.get_value_type(kind))
 
-    return record_at
+        return kind(types.intp), generate
+
+    return intrinsic(at)
 
 
 class Workspace:

@@ -8,16 +8,20 @@ import math
 from functools import cache
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from squealpipe.systems.compiled import part
-from squealpipe.systems.taylor.lanes import call, compile_advance, view
+from squealpipe.systems.taylor.lanes import (
+    address_of,
+    call,
+    compile_advance,
+    record_viewer,
+    view,
+)
 from squealpipe.systems.taylor.roots import evaluate
 from squealpipe.systems.taylor.simd import FEW, LANES, ROW, smaller, splat, store
 from squealpipe.systems.taylor.step import reach, step_length
 
-_numba: Any = numba
 FIRST_PARAMETER = 3
 """The row of the first parameter, after those of the steps that ``shorten`` reads and writes."""
 LEG_ARRAYS = (
@@ -49,6 +53,7 @@ LEG_SIZES = (
     "shorten",
 )
 LEG_TABLE = np.dtype([(name, "i8") for name in (*LEG_ARRAYS, *LEG_SIZES)])
+_record_at: Any = record_viewer(LEG_TABLE)
 
 
 class _Memory(NamedTuple):
@@ -118,7 +123,7 @@ def _longest(m: Any) -> float:
 
 def _advance(table: Any) -> int:
     """Run all legs, four side by side; returns 0. ``counts`` may be beyond the room for steps."""
-    t = _numba.carray(table, (1,), LEG_TABLE)[0]
+    t = _record_at(address_of(table))
     n, terms = t.n_states, t.n_terms
     m = _Memory(
         rows=view(

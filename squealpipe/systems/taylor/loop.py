@@ -9,13 +9,18 @@ import math
 from functools import cache
 from typing import Any
 
-import numba
 import numpy as np
 
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.checking import believe_or_halve, differing, end_stalled
-from squealpipe.systems.taylor.lanes import address_of, call, compile_advance, view
+from squealpipe.systems.taylor.lanes import (
+    address_of,
+    call,
+    compile_advance,
+    record_viewer,
+    view,
+)
 from squealpipe.systems.taylor.memory import memory_at
 from squealpipe.systems.taylor.observation import (
     clear_extremes,
@@ -44,7 +49,7 @@ from squealpipe.systems.taylor.switching import (
     watch,
 )
 
-_numba: Any = numba
+_record_at: Any = record_viewer(layout.LOOP_TABLE)
 
 
 @part
@@ -354,7 +359,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: ``layout.LOOP_TABLE``."""
-    t = _numba.carray(table, (1,), layout.LOOP_TABLE)[0]
+    t = _record_at(address_of(table))
     m = memory_at(address_of(table))
     # with any strides, as that of structures: both loops share what is compiled for it
     c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)[:, :, ::1]

@@ -60,6 +60,20 @@ class _Attributes(_AttributeTemplate):  # type: ignore[misc]
         return table.kind(name) if name in table.fields else None
 
 
+def contiguous(
+    context: Any, builder: Any, kind: Any, address: Any, shape: list[Any]
+) -> Any:
+    """Write the code that makes an array of its address and shape."""
+    itemsize = context.get_abi_sizeof(context.get_data_type(kind.dtype))
+    strides = [ir.Constant(_word, itemsize)]
+    for dimension in shape[:0:-1]:
+        strides.insert(0, builder.mul(dimension, strides[0]))
+    array: Any = _arrays.make_array(kind)(context, builder)
+    data = builder.inttoptr(address, array.data.type)
+    _arrays.populate_array(array, data, shape, strides, itemsize=itemsize, meminfo=None)
+    return array._getvalue()  # noqa: SLF001 (numba's own code reads it so)
+
+
 def _attribute(
     context: Any, builder: Any, table: _Table, address: Any, name: str
 ) -> Any:
@@ -83,13 +97,7 @@ def _attribute(
     if kind is types.int64:
         return number(name)
     shape = [size(dimension) for dimension in table.arrays[name][1:]]
-    strides = [ir.Constant(_word, 8)]
-    for dimension in shape[:0:-1]:
-        strides.insert(0, builder.mul(dimension, strides[0]))
-    array: Any = _arrays.make_array(kind)(context, builder)
-    data = builder.inttoptr(number(name), array.data.type)
-    _arrays.populate_array(array, data, shape, strides, itemsize=8, meminfo=None)
-    return array._getvalue()  # noqa: SLF001 (numba's own code reads it so)
+    return contiguous(context, builder, kind, number(name), shape)
 
 
 _lower(_Table)(_attribute)
