@@ -256,7 +256,10 @@ RAGGED = {
 }
 
 
-@pytest.mark.parametrize("finished", [0, 1, 3, 7, 8])
+@pytest.mark.parametrize(
+    "finished",
+    [0, 3, 8, *(pytest.param(count, marks=pytest.mark.release) for count in (1, 7))],
+)
 def test_a_sweep_that_was_stopped_goes_on_where_it_was(tmp_path, monkeypatch, finished):
     kept, plan = Chunks(tmp_path / ".runs", "0" * 16), Sweep(**RAGGED)
     made, run = [], Sweep.run
@@ -332,7 +335,9 @@ def test_a_damaged_chunk_is_made_again(tmp_path):
     assert run_sweep(plan, workers=2, kept=kept).identical(whole)
 
 
-@pytest.mark.parametrize("lost", [0, 1, 2, 3])
+@pytest.mark.parametrize(
+    "lost", [0, 1, *(pytest.param(k, marks=pytest.mark.release) for k in (2, 3))]
+)
 def test_runs_behind_a_lost_chunk_are_made_again(tmp_path, monkeypatch, lost):
     kept, plan = Chunks(tmp_path / ".runs", "0" * 16), Sweep(**RAGGED)
     with monkeypatch.context() as patch:

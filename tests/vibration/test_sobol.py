@@ -60,7 +60,7 @@ def inside_indices():
     ("function", "exact"),
     [
         (ishigami, ishigami_indices()),
-        (g_function, g_indices()),
+        pytest.param(g_function, g_indices(), marks=pytest.mark.release),
         (inside, inside_indices()),
     ],
 )

@@ -103,7 +103,7 @@ def test_only_as_printed_is_true_as_printed_and_false_with_one_sign(
     assert left == ["F6b", "F6c", "C2"]  # Eq. (11) is told from the reaction force
 
 
-@pytest.mark.parametrize("every", [2, 8])
+@pytest.mark.parametrize("every", [pytest.param(2, marks=pytest.mark.release), 8])
 def test_coarse_grids_leave_nothing_undecided(every, evidence, baseline):
     """What is said of a scene is judged at its angles, on no grid."""
     linear = ("quasi_static_map", "stability_map", "natural_frequencies", "linear_pull")

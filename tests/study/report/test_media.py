@@ -36,7 +36,8 @@ def test_readers_of_screens_and_keyboards_can_use_them(elements):
         assert "my &lt;pad&gt;" in found
 
 
-def test_a_motion_that_cannot_be_heard_is_said_so(swaying):
+def test_a_motion_that_cannot_be_heard_is_said_so(swaying, monkeypatch):
+    monkeypatch.setattr("squealpipe.study.report.media.has_ffmpeg", lambda: False)
     short = swaying.isel(time=slice(-60, None))
     told = media_of("pad", short)
     assert "There is no sound: the settled part of the run is too short" in told
