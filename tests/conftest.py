@@ -1,6 +1,7 @@
 """Shared fixtures: a copy of the checkout, and one run of the tiny study for all tests."""
 
 import contextlib
+import copy
 import functools
 import gc
 import os
@@ -184,6 +185,17 @@ def options_read_once():
         for name in ("extract_docstring_help", "_resolve_groups_from_callable"):
             read = functools.cache(getattr(_collection, name))
             patch.setattr(_collection, name, read)
+        yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def configurations_parsed_once():
+    """The same text in YAML, mostly that of the paper's study, is parsed once."""
+    with pytest.MonkeyPatch.context() as patch:
+        from squealpipe.store import yaml_files
+
+        parsed = functools.cache(yaml_files.parsed)
+        patch.setattr(yaml_files, "parsed", lambda text: copy.deepcopy(parsed(text)))
         yield
 
 

@@ -52,6 +52,11 @@ for _kind, _form, _first in (
     )
 
 
+def parsed(text: str) -> Any:
+    """Return what a text in YAML says."""
+    return yaml.load(text, _Loader)  # noqa: S506 (a safe one)
+
+
 def read_yaml(path: Path) -> dict[str, Any]:
     """Content of a file."""
     if not path.is_file():
@@ -59,7 +64,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
             f"no configuration {path}; give a YAML file that exists"
         )
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 (a safe one)
+        content = parsed(path.read_text(encoding="utf-8"))
     except UnicodeDecodeError as error:
         raise ConfigError(
             [
