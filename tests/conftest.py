@@ -102,12 +102,7 @@ def pytest_itemcollected(item):
 
 
 def pytest_collection_modifyitems(items):
-    """The longest files first, so that all processes end at about the same time.
-
-    And hypothesis tries no constants of our modules, which took each process of a new checkout 2 s.
-    """
-    if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
-        providers._get_local_constants = lambda: providers._local_constants
+    """The longest files first, so that all processes end at about the same time."""
     longest = (
         "readme",
         "installation",
