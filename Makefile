@@ -96,7 +96,7 @@ $(STUDY): requirements.lock requirements-pip.lock pyproject.toml
 	$(BIN)/python -m compileall -q squealpipe
 	touch $@
 
-# 21 s of CPU time, which several first jobs or tests would otherwise spend at once; and byte code of what jobs
+# 20 s of CPU time, which several first jobs or tests would otherwise spend at once; and byte code of what jobs
 # import, for those who may not write it. To look for cyclic garbage in what is imported would take 1 s more.
 COMPILE_LOOPS := $(BIN)/python -c "import gc; gc.disable(); \
   import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli; \
