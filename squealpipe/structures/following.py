@@ -59,9 +59,8 @@ def _keep_twins(
             if place >= 0 and reached.real != 0 and reached.imag != 0 and other.size:
                 break
         else:
-            if (
-                places[both].min() >= 0
-            ):  # they have parted: shapes do not tell them apart
+            # they have parted: shapes do not tell them apart
+            if places[both].min() >= 0:
                 places[both] = sorted(places[both])
             continue
         pair = sorted((place, other[0]), key=lambda k: -second.values[k].real)

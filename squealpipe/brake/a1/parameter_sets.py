@@ -153,7 +153,7 @@ def _systems(
     damped = (numbers["damping1"] > 0) | (numbers["damping2"] > 0)
     one_mu = numbers["static_mu"] == numbers["mu"]
     falling = np.isin(laws, FALLING)
-    if falling.any():
+    if falling.any():  # else there would be a text for each run to sort
         laws = np.where(one_mu & falling, COULOMB, laws)
     with np.errstate(over="ignore"):
         long = LONG_SPRING * numbers["preload"]

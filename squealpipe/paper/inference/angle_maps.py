@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from squealpipe.laws.springs import springs_are_equal
 from squealpipe.paper.inference.candidates import Candidates
@@ -140,7 +141,8 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
         if step == 1 and not candidates.exact:
             # √(m/k1); next to some cell that keeps contact, if any does, it lasts for 13 at least
             first_swing = 6.0
-            wanted &= np.convolve(lasts > first_swing, np.ones(15))[7:-7] > 0.0
+            # those of every eighth on both sides are less than eight cells away
+            wanted &= maximum_filter1d(lasts, 15, mode="constant") > first_swing
         at = np.flatnonzero(wanted)
         owner, fresh[at] = unstable.owner[at], False
         some = candidates.subset(owner)

@@ -174,6 +174,12 @@ def test_every_unstable_cell_is_run_once_where_none_keeps_contact(likely, monkey
     assert sizes == [run[0].shape[1], run[1].shape[1], 0]
 
 
+@pytest.mark.parametrize("exact", [True, False])
+def test_no_sets_have_no_shares(likely, exact):
+    none = replace(Candidates(likely, 1e-9), exact=exact).subset(np.arange(0))
+    assert keeping_share(none).size == 0
+
+
 def test_cells_that_are_not_run_change_no_verdict(likely):
     """Signs without the cells between those that lose contact at once, against those with them."""
     exact = Candidates(likely, 1e-9)
